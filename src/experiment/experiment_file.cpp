@@ -1,0 +1,366 @@
+#include "experiment/experiment_file.h"
+
+#define TOML_ENABLE_FORMATTERS 0
+#include <toml++/toml.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <thread>
+
+#include "core/error.h"
+#include "experiment/files.h"
+#include "integrators/registry.h"
+
+namespace photonlab {
+
+namespace {
+
+constexpr std::int64_t most_passes = 0xffffffff;    // a random stream's pass has 32 bits
+constexpr std::int64_t largest_side = 65536;
+constexpr std::int64_t most_threads = 1024;
+constexpr std::size_t most_runs = 100'000;
+
+/// The values of one setting, and where they stand in the file.
+struct Axis {
+    std::vector<SettingValue> values;
+    std::string place;
+};
+using Axes = std::map<std::string, Axis, std::less<>>;
+
+struct Method {
+    std::optional<std::string> name;
+    Axes axes;
+    std::string place;
+};
+
+/// Everything from letters to dots stays, the rest becomes a dash.
+std::string file_safe(std::string text) {
+    for (char& c : text)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-' && c != '_' && c != '+') c = '-';
+    return text;
+}
+
+void sort_unique(std::vector<std::uint64_t>& values) {
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+class ExperimentReader {
+public:
+    ExperimentReader(const std::filesystem::path& file, std::optional<SmokeLimits> smoke) : smoke_(smoke) {
+        experiment_.file = file;
+        experiment_.name = file.stem().string() + (smoke ? "-smoke" : "");
+    }
+
+    Experiment read() {
+        const std::string text = read_text_file(experiment_.file);
+        toml::table root;
+        try {
+            root = toml::parse(text, experiment_.file.string());
+        } catch (const toml::parse_error& error) {
+            throw InputError(fmt::format("{}:{}", experiment_.file.string(), error.source().begin.line),
+                             std::string(error.description()));
+        }
+        std::vector<std::string_view> known{"title",     "scenes",     "method",            "seeds",  "passes", "record",
+                                            "snapshots", "resolution", "samples_per_pixel", "threads"};
+        for (const SettingField& field : setting_fields()) known.push_back(field.name);
+        require_known(root, known);
+
+        experiment_.title = root.contains("title") ? string(*root.get("title"), "title") : experiment_.name;
+        read_passes(root);
+        read_sampling(root);
+        read_seeds(root);
+        read_scenes(root);
+        for (const SettingField& field : setting_fields())
+            if (const toml::node* node = root.get(field.name)) defaults_[std::string(field.name)] = axis(*node, field.name);
+        read_methods(root);
+        return std::move(experiment_);
+    }
+
+private:
+    std::string place(const toml::node& node) const {
+        return fmt::format("{}:{}", experiment_.file.string(), node.source().begin.line);
+    }
+    std::string whole_file() const { return experiment_.file.string(); }
+
+    void require_known(const toml::table& table, const std::vector<std::string_view>& known) const {
+        for (const auto& [key, node] : table) {
+            if (std::find(known.begin(), known.end(), std::string_view(key.str())) != known.end()) continue;
+            std::string list;
+            for (const std::string_view name : known) list += (list.empty() ? "" : ", ") + std::string(name);
+            throw InputError(place(node), fmt::format("unknown key \"{}\"; known here: {}", std::string_view(key.str()), list));
+        }
+    }
+
+    std::string string(const toml::node& node, std::string_view what) const {
+        const auto value = node.value_exact<std::string>();
+        if (!value) throw InputError(place(node), fmt::format("{}: expected text in quotes", what));
+        if (value->empty()) throw InputError(place(node), fmt::format("{}: expected text, it is empty", what));
+        return *value;
+    }
+
+    std::int64_t integer(const toml::node& node, std::string_view what, std::int64_t least, std::int64_t most) const {
+        const auto value = node.value_exact<std::int64_t>();
+        if (!value || *value < least || *value > most)
+            throw InputError(place(node), fmt::format("{}: expected a whole number from {} to {}{}", what, least, most,
+                                                      value ? fmt::format(", got {}", *value) : ""));
+        return *value;
+    }
+
+    std::vector<std::uint64_t> integers(const toml::node& node, std::string_view what, std::int64_t least,
+                                        std::int64_t most) const {
+        const toml::array* array = node.as_array();
+        if (!array || array->empty())
+            throw InputError(place(node), fmt::format("{}: expected a list of whole numbers", what));
+        std::vector<std::uint64_t> values;
+        for (const toml::node& item : *array)
+            values.push_back(static_cast<std::uint64_t>(integer(item, what, least, most)));
+        return values;
+    }
+
+    Resolution resolution(const toml::node& node) const {
+        const std::vector<std::uint64_t> sides = integers(node, "resolution", 1, largest_side);
+        if (sides.size() != 2) throw InputError(place(node), "resolution: expected [width, height]");
+        return {static_cast<int>(sides[0]), static_cast<int>(sides[1])};
+    }
+
+    SettingValue value(const toml::node& node, std::string_view what) const {
+        if (const auto boolean = node.value_exact<bool>()) return *boolean;
+        if (const auto number = node.value_exact<std::int64_t>()) return *number;
+        if (const auto number = node.value_exact<double>()) return *number;
+        if (const auto text = node.value_exact<std::string>()) return *text;
+        throw InputError(place(node), fmt::format("{}: expected a number, a name, or a list of those", what));
+    }
+
+    Axis axis(const toml::node& node, std::string_view what) const {
+        Axis result{{}, place(node)};
+        if (const toml::array* array = node.as_array()) {
+            if (array->empty()) throw InputError(place(node), fmt::format("{}: the list of values is empty", what));
+            for (const toml::node& item : *array) result.values.push_back(value(item, what));
+        } else {
+            result.values.push_back(value(node, what));
+        }
+        return result;
+    }
+
+    void read_passes(const toml::table& root) {
+        const toml::node* node = root.get("passes");
+        if (!node) throw InputError(whole_file(), "passes is missing: how many passes each run has");
+        const std::uint64_t written = static_cast<std::uint64_t>(integer(*node, "passes", 1, most_passes));
+        experiment_.passes = smoke_ ? std::min(written, smoke_->passes) : written;
+        const auto up_to_last = [&](std::vector<std::uint64_t> list) {
+            std::erase_if(list, [&](std::uint64_t pass) { return pass > experiment_.passes; });
+            list.push_back(experiment_.passes);
+            sort_unique(list);
+            return list;
+        };
+
+        const toml::node* record = root.get("record");
+        std::vector<std::uint64_t> recorded = powers_of_two(experiment_.passes);
+        if (record && record->is_string()) {
+            const std::string rule = string(*record, "record");
+            if (rule == "all") {
+                for (std::uint64_t pass = 1; pass <= experiment_.passes; ++pass) recorded.push_back(pass);
+            } else if (rule != "powers-of-two") {
+                throw InputError(place(*record),
+                                 fmt::format("unknown record \"{}\"; known here: all, powers-of-two, a list of passes", rule));
+            }
+        } else if (record) {
+            recorded = integers(*record, "record", 0, static_cast<std::int64_t>(written));
+        }
+        recorded.push_back(0);
+        experiment_.recorded = up_to_last(std::move(recorded));
+
+        const toml::node* snapshots = root.get("snapshots");
+        if (snapshots && !(snapshots->is_array() && snapshots->as_array()->empty()))
+            experiment_.snapshots = integers(*snapshots, "snapshots", 0, static_cast<std::int64_t>(written));
+        experiment_.snapshots = up_to_last(std::move(experiment_.snapshots));
+    }
+
+    void read_sampling(const toml::table& root) {
+        experiment_.threads = hardware_threads();
+        if (const toml::node* node = root.get("threads"))
+            experiment_.threads = static_cast<int>(integer(*node, "threads", 1, most_threads));
+        if (const toml::node* node = root.get("samples_per_pixel")) {
+            const std::int64_t samples = integer(*node, "samples_per_pixel", 1, 1 << 20);
+            at(place(*node), [&] { require_perfect_square(samples); });
+            experiment_.samples_per_pixel = static_cast<int>(samples);
+        }
+        if (const toml::node* node = root.get("resolution")) resolution_ = resolution(*node);
+    }
+
+    void read_seeds(const toml::table& root) {
+        seeds_ = {1};
+        if (const toml::node* node = root.get("seeds")) {
+            if (node->is_array()) {
+                seeds_ = integers(*node, "seeds", 0, std::numeric_limits<std::int64_t>::max());
+            } else {
+                seeds_.resize(static_cast<std::size_t>(integer(*node, "seeds", 1, most_runs)));
+                for (std::size_t i = 0; i < seeds_.size(); ++i) seeds_[i] = i + 1;
+            }
+        }
+        if (smoke_ && seeds_.size() > smoke_->seeds) seeds_.resize(smoke_->seeds);
+    }
+
+    std::filesystem::path path(const toml::node& node, std::string_view what) const {
+        const std::filesystem::path written = string(node, what);
+        const std::filesystem::path whole = (experiment_.file.parent_path() / written).lexically_normal();
+        if (!std::filesystem::exists(whole))
+            throw InputError(place(node), fmt::format("{}: {} does not exist", what, whole.string()));
+        return whole;
+    }
+
+    void read_scenes(const toml::table& root) {
+        const toml::array* scenes = root["scenes"].as_array();
+        if (!scenes || scenes->empty())
+            throw InputError(root.contains("scenes") ? place(*root.get("scenes")) : whole_file(),
+                             "scenes: expected a list of scene files, or of tables with path and reference");
+        for (const toml::node& node : *scenes) {
+            SceneEntry scene;
+            scene.resolution = resolution_;
+            if (const toml::table* table = node.as_table()) {
+                require_known(*table, {"path", "reference", "resolution", "name"});
+                if (!table->contains("path")) throw InputError(place(node), "scene: path is missing");
+                scene.file = path(*table->get("path"), "path");
+                if (const toml::node* reference = table->get("reference")) scene.reference = path(*reference, "reference");
+                if (const toml::node* pixels = table->get("resolution")) scene.resolution = resolution(*pixels);
+                if (const toml::node* name = table->get("name")) scene.name = file_safe(string(*name, "name"));
+            } else {
+                scene.file = path(node, "scenes");
+            }
+            if (std::filesystem::is_directory(scene.file))
+                throw InputError(place(node), scene.file.string() + " is a folder; expected a scene file in it");
+            if (scene.name.empty()) {
+                const bool in_folder = scene.file.filename() == "scene.xml";
+                const std::filesystem::path named = in_folder ? std::filesystem::absolute(scene.file).parent_path() : scene.file;
+                scene.name = file_safe(in_folder ? named.filename().string() : named.stem().string());
+            }
+            experiment_.scenes.push_back(std::move(scene));
+        }
+    }
+
+    void read_methods(const toml::table& root) {
+        const toml::array* tables = root["method"].as_array();
+        if (!tables || tables->empty() || !tables->is_homogeneous<toml::table>())
+            throw InputError(root.contains("method") ? place(*root.get("method")) : whole_file(),
+                             "method: expected at least one table [[method]]");
+        std::vector<Method> methods;
+        for (const toml::node& node : *tables) {
+            const toml::table& table = *node.as_table();
+            std::vector<std::string_view> known{"name"};
+            for (const SettingField& field : setting_fields()) known.push_back(field.name);
+            require_known(table, known);
+            Method method;
+            method.place = place(node);
+            if (const toml::node* name = table.get("name")) method.name = file_safe(string(*name, "name"));
+            for (const SettingField& field : setting_fields())
+                if (const toml::node* setting = table.get(field.name))
+                    method.axes[std::string(field.name)] = axis(*setting, field.name);
+            if (!method.axes.contains("integrator") && !defaults_.contains("integrator"))
+                throw InputError(method.place, "method: integrator is missing");
+            methods.push_back(std::move(method));
+        }
+        for (std::size_t scene = 0; scene < experiment_.scenes.size(); ++scene)
+            for (const Method& method : methods) add_runs(scene, method, 0, {}, "");
+        for (const auto& [name, default_axis] : defaults_)
+            if (!used_defaults_.contains(name)) throw InputError(default_axis.place, name + " is used by no method");
+    }
+
+    /// Adds the runs of `method` that share the settings before field `index`: a walk through the product of its axes.
+    /// A field stands after those that decide whether it is used, so that can be asked on the way.
+    void add_runs(std::size_t scene, const Method& method, std::size_t index, const ChosenSettings& settings,
+                  const std::string& swept) {
+        if (index == setting_fields().size()) {
+            add_seeds(scene, method, settings, swept);
+            return;
+        }
+        const SettingField& field = setting_fields()[index];
+        const auto own = method.axes.find(field.name);
+        const auto common = defaults_.find(field.name);
+        const bool is_own = own != method.axes.end();
+        if (!is_own && (common == defaults_.end() || !uses_setting(settings.values, field.name))) {
+            add_runs(scene, method, index + 1, settings, swept);
+            return;
+        }
+        if (!is_own) used_defaults_.emplace(field.name);
+        const Axis& values = is_own ? own->second : common->second;
+        for (const SettingValue& value : values.values) {
+            ChosenSettings chosen = settings;
+            at(values.place, [&] {
+                choose(chosen, field, value);
+                require_valid(chosen.values);
+                require_used(chosen, field);
+            });
+            const bool varies = values.values.size() > 1;
+            const std::string text = plain_text(field.write(chosen.values));
+            add_runs(scene, method, index + 1, chosen, varies ? fmt::format("{}_{}-{}", swept, field.name, text) : swept);
+        }
+    }
+
+    void add_seeds(std::size_t scene, const Method& method, ChosenSettings settings, const std::string& swept) {
+        if (smoke_ && uses_setting(settings.values, "photons_per_pass"))
+            settings.values.photons_per_pass = std::min(settings.values.photons_per_pass, smoke_->photons_per_pass);
+        const std::string name = method.name.value_or(settings.values.integrator);
+        for (const std::uint64_t seed : seeds_) {
+            ExperimentRun run;
+            run.name = file_safe(fmt::format("{}_{}{}_seed-{}", experiment_.scenes[scene].name, name, swept, seed));
+            run.scene = scene;
+            run.method = name;
+            run.settings = settings;
+            run.seed = seed;
+            if (!names_.insert(run.name).second)
+                throw InputError(method.place, fmt::format("two runs are called {}: give methods and scenes names of their "
+                                                           "own, and values and seeds once", run.name));
+            if (experiment_.runs.size() == most_runs)
+                throw InputError(method.place, fmt::format("more than {} runs", most_runs));
+            experiment_.runs.push_back(std::move(run));
+        }
+    }
+
+    /// Runs `body`; an InputError gets the place in front.
+    template <typename Body>
+    void at(const std::string& where, const Body& body) const {
+        try {
+            body();
+        } catch (const InputError& error) {
+            throw InputError(where, error.what());
+        }
+    }
+
+    Experiment experiment_;
+    std::optional<SmokeLimits> smoke_;
+    std::optional<Resolution> resolution_;
+    std::vector<std::uint64_t> seeds_;
+    Axes defaults_;
+    std::set<std::string, std::less<>> used_defaults_;
+    std::set<std::string> names_;
+};
+
+}  // namespace
+
+Experiment read_experiment(const std::filesystem::path& file, std::optional<SmokeLimits> smoke) {
+    return ExperimentReader(file, smoke).read();
+}
+
+std::vector<std::uint64_t> powers_of_two(std::uint64_t passes) {
+    std::vector<std::uint64_t> result{0};
+    for (std::uint64_t pass = 1; pass <= passes && pass != 0; pass *= 2) result.push_back(pass);
+    result.push_back(passes);
+    sort_unique(result);
+    return result;
+}
+
+int hardware_threads() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
+
+void require_perfect_square(std::int64_t samples_per_pixel) {
+    const auto side = std::llround(std::sqrt(static_cast<double>(samples_per_pixel)));
+    if (samples_per_pixel < 1 || side > 1024 || side * side != samples_per_pixel)
+        throw InputError(fmt::format("samples_per_pixel: expected a perfect square from 1 to 1048576, got {}",
+                                     samples_per_pixel));
+}
+
+}  // namespace photonlab

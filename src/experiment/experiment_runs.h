@@ -1,0 +1,57 @@
+// Runs an experiment: whatever of it is not finished, one run after another, each into a folder of its own.
+//
+//     RESULTS/iterations.csv                    all finished runs of the experiment, replaced at once at the end
+//     RESULTS/runs/RUN/iterations.csv           the run's rows, appended as its passes finish
+//     RESULTS/runs/RUN/snapshots/pass-000064.exr
+//     RESULTS/runs/RUN/run.json                 written last: a folder without it is not finished
+//
+// A finished run is recognised by its key: a hash of its settings, scene, reference and the program's version. One whose
+// key differs from what the experiment asks for now is made again from the start.
+
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiment/experiment_file.h"
+#include "experiment/runner.h"
+#include "scene/scene.h"
+
+namespace photonlab {
+
+/// A run that is ready to start: its scene is there, its reference fits.
+struct PreparedRun {
+    const ExperimentRun* run = nullptr;
+    RunSettings settings;
+    std::string key;
+    std::filesystem::path folder;
+    bool finished = false;    ///< with this key
+};
+
+struct PreparedExperiment {
+    std::vector<std::optional<Scene>> scenes;    ///< by index of Experiment::scenes; only those that a selected run needs
+    std::vector<PreparedRun> runs;               ///< the selected ones
+};
+
+/// Loads scenes and checks references for the runs whose name matches `only` (a shell pattern; empty: all). Throws
+/// InputError before anything is run or written. `experiment` must outlive the result.
+PreparedExperiment prepare_experiment(const Experiment& experiment, const std::filesystem::path& results,
+                                      const std::optional<std::string>& only = std::nullopt);
+
+struct ExperimentOutcome {
+    std::size_t ran = 0;
+    std::size_t skipped = 0;               ///< were finished already
+    std::filesystem::path records;         ///< the merged iterations.csv
+    std::size_t merged = 0;                ///< runs in it
+};
+
+/// Runs what is not finished and merges the records.
+ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExperiment& prepared,
+                                 const std::filesystem::path& results);
+
+/// One line a run: name, estimated time and memory, or that it is finished; then the sums.
+std::string list_runs(const Experiment& experiment, const PreparedExperiment& prepared);
+
+}  // namespace photonlab

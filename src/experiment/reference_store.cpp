@@ -1,0 +1,218 @@
+#include "experiment/reference_store.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <chrono>
+#include <memory>
+
+#include "core/error.h"
+#include "experiment/files.h"
+#include "experiment/hash.h"
+#include "experiment/version.h"
+#include "image/exr.h"
+#include "integrators/registry.h"
+
+namespace photonlab {
+
+namespace {
+
+constexpr std::string_view halves[] = {"half_a", "half_b"};
+constexpr std::string_view key_attribute = "photonlab.key";
+constexpr std::string_view seed_attribute = "photonlab.seed";
+constexpr std::string_view samples_attribute = "photonlab.samples";
+
+std::filesystem::path half_file(const std::filesystem::path& folder, std::string_view half) {
+    return folder / (std::string(half) + ".exr");
+}
+
+std::uint64_t read_number(const std::filesystem::path& file, const Metadata& metadata, std::string_view attribute) {
+    const auto found = metadata.find(std::string(attribute));
+    const std::string text = found == metadata.end() ? "" : found->second;
+    std::uint64_t number = 0;
+    const auto result = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (text.empty() || result.ec != std::errc() || result.ptr != text.data() + text.size())
+        throw InputError(file.string(), fmt::format("this is no half of a reference: its attribute {} is not a number",
+                                                    attribute));
+    return number;
+}
+
+/// One half while samples are added: what was there, and an integrator that makes what is new.
+class GrowingHalf {
+public:
+    GrowingHalf(std::filesystem::path file, const std::string& key, std::uint64_t seed, const MethodSettings& settings,
+                const IntegratorContext& context)
+        : file_(std::move(file)), key_(key), seed_(seed), integrator_(make_integrator(settings, context)) {
+        if (!std::filesystem::exists(file_)) return;
+        Metadata metadata;
+        stored_ = read_exr(file_, &metadata);
+        if (metadata[std::string(key_attribute)] != key_)
+            throw InputError(file_.string(),
+                             "this is a half of another reference: its scene, resolution, samples per pixel or depth differ; "
+                             "choose another folder");
+        const std::uint64_t stored_seed = read_number(file_, metadata, seed_attribute);
+        if (stored_seed != seed_)
+            throw InputError(file_.string(), fmt::format("was made with seed {}; it cannot be continued with seed {}",
+                                                         stored_seed, seed_));
+        stored_samples_ = read_number(file_, metadata, samples_attribute);
+    }
+
+    std::uint64_t samples() const { return stored_samples_ + new_samples_; }
+
+    void add_sample() {
+        ++new_samples_;
+        integrator_->run_pass(stored_samples_ + new_samples_, PhotonPass{}, [](Stage) {});
+    }
+
+    /// Mean over old and new samples, in double until it is stored.
+    Image mean() {
+        if (new_samples_ == 0) return stored_;
+        Image image = integrator_->estimate([](Stage) {});
+        if (stored_samples_ == 0) return image;
+        const double share = static_cast<double>(new_samples_) / static_cast<double>(samples());
+        for (Layer& layer : image.layers) {
+            const std::vector<Color>& stored = *stored_.find(layer.name);
+            for (std::size_t i = 0; i < layer.pixels.size(); ++i)
+                layer.pixels[i] = Color(ColorD(stored[i]) * (1.0 - share) + ColorD(layer.pixels[i]) * share);
+        }
+        return image;
+    }
+
+    /// Replaces the file; returns its checksum.
+    std::string save(const Image& image) const {
+        write_exr(file_, image,
+                  {{std::string(key_attribute), key_},
+                   {std::string(seed_attribute), std::to_string(seed_)},
+                   {std::string(samples_attribute), std::to_string(samples())}});
+        return hash_file(file_);
+    }
+
+private:
+    const std::filesystem::path file_;
+    const std::string key_;
+    const std::uint64_t seed_;
+    std::unique_ptr<Integrator> integrator_;
+    Image stored_;
+    std::uint64_t stored_samples_ = 0;
+    std::uint64_t new_samples_ = 0;
+};
+
+/// Mean (A-B)^2 / 4 of the whole and of each layer.
+Json noise_floor(const Image& half_a, const Image& half_b) {
+    Reference reference;
+    reference.half_a = half_a;
+    reference.half_b = half_b;
+    Json floor = Json::object();
+    for (const std::string& component : components) {
+        const auto errors = judge(half_a, reference, component, false);
+        floor[component] = errors ? Json(errors->reference_floor.value_or(0.0)) : Json();
+    }
+    return floor;
+}
+
+double stored_seconds(const std::filesystem::path& folder) {
+    return std::filesystem::exists(folder / "reference.json") ? read_reference_json(folder).value("seconds", 0.0) : 0.0;
+}
+
+}  // namespace
+
+Json add_reference_samples(const Scene& scene, const ReferenceSettings& settings, const std::filesystem::path& folder,
+                           const SampleListener& on_sample) {
+    require_perfect_square(settings.samples_per_pixel);
+    const ReferenceSubject subject{scene.hash, scene.camera.width, scene.camera.height, settings.samples_per_pixel,
+                                   settings.max_depth};
+    const std::string key = reference_key(subject);
+    MethodSettings method;
+    method.integrator = "path";
+    method.max_depth = settings.max_depth;
+    require_valid(method);
+    require_writable(folder / "reference.json");
+    const double seconds_before = stored_seconds(folder);
+
+    const HitPoints hit_points = trace_hit_points(scene, settings.samples_per_pixel, settings.threads);
+    const auto began = std::chrono::steady_clock::now();
+    const auto half = [&](std::string_view name, RandomPurpose purpose) {
+        return GrowingHalf(half_file(folder, name), key, settings.seed, method,
+                           IntegratorContext{scene, hit_points, settings.seed, settings.threads, purpose});
+    };
+    GrowingHalf half_a = half(halves[0], RandomPurpose::ReferenceHalfA);
+    GrowingHalf half_b = half(halves[1], RandomPurpose::ReferenceHalfB);
+
+    Json json;
+    const auto save = [&] {
+        const Image image_a = half_a.mean();
+        const Image image_b = half_b.mean();
+        const std::string checksum_a = half_a.save(image_a);
+        const std::string checksum_b = half_b.save(image_b);
+        const ProgramVersion program = program_version();
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+        json = Json{{"schema", 1},
+                    {"key", key},
+                    {"reference_version", reference_version},
+                    {"integrator", method.integrator},
+                    {"scene", {{"name", scene.name}, {"file", settings.scene_file.string()}, {"hash", scene.hash}}},
+                    {"width", subject.width},
+                    {"height", subject.height},
+                    {"samples_per_pixel", subject.samples_per_pixel},
+                    {"max_depth", subject.max_depth},
+                    {"seed", settings.seed},
+                    {"samples_per_half", half_a.samples()},
+                    {"seconds", seconds_before + seconds},
+                    {"floor_mse", noise_floor(image_a, image_b)},
+                    {"checksums", {{"half_a", checksum_a}, {"half_b", checksum_b}}},
+                    {"program", {{"version", program.version}, {"commit", program.commit}}}};
+        write_text_file(folder / "reference.json", json.dump(2) + "\n");
+    };
+
+    const std::uint64_t target = std::max(half_a.samples(), half_b.samples()) + settings.samples;
+    const std::uint64_t before = half_a.samples() + half_b.samples();
+    const std::uint64_t to_do = 2 * target - before;
+    auto saved = began;
+    while (half_a.samples() < target || half_b.samples() < target) {
+        GrowingHalf& lagging = half_b.samples() < half_a.samples() ? half_b : half_a;
+        lagging.add_sample();
+        on_sample(half_a.samples() + half_b.samples() - before, to_do);
+        const auto now = std::chrono::steady_clock::now();
+        const bool is_time = std::chrono::duration<double>(now - saved).count() >= settings.seconds_between_saves;
+        if (is_time && half_a.samples() == half_b.samples()) {
+            save();
+            saved = std::chrono::steady_clock::now();
+        }
+    }
+    save();
+    return json;
+}
+
+Json read_reference_json(const std::filesystem::path& folder) {
+    const std::filesystem::path file = folder / "reference.json";
+    if (!std::filesystem::exists(file))
+        throw InputError(folder.string(), "this is no reference: reference.json is missing (photonlab reference makes one)");
+    Json json;
+    try {
+        json = Json::parse(read_text_file(file));
+        json.at("scene").at("hash").get<std::string>();
+        for (const char* number : {"width", "height", "samples_per_pixel", "max_depth", "reference_version"})
+            json.at(number).get<int>();
+        json.at("key").get<std::string>();
+        json.at("samples_per_half").get<std::uint64_t>();
+        json.at("floor_mse").at("total").get<double>();
+        for (const std::string_view half : halves) json.at("checksums").at(std::string(half)).get<std::string>();
+    } catch (const Json::exception& error) {
+        throw InputError(file.string(), std::string("this is no reference: ") + error.what());
+    }
+    return json;
+}
+
+Image read_reference_half(const std::filesystem::path& folder, const Json& json, std::string_view half) {
+    const std::filesystem::path file = half_file(folder, half);
+    if (hash_file(file) != json.at("checksums").at(std::string(half)).get<std::string>())
+        throw InputError(file.string(),
+                         "is not the file that reference.json was written for: it was changed, or a save was interrupted "
+                         "(photonlab reference with the same folder repairs the latter)");
+    Image image = read_exr(file);
+    if (image.width != json.at("width").get<int>() || image.height != json.at("height").get<int>())
+        throw InputError(file.string(), "is not of the size that reference.json gives");
+    return image;
+}
+
+}  // namespace photonlab

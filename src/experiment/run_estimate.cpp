@@ -1,0 +1,65 @@
+#include "experiment/run_estimate.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include "integrators/registry.h"
+
+namespace photonlab {
+
+namespace {
+
+constexpr std::uint64_t probe_photons = 10'000;
+constexpr std::uint64_t probe_passes = 3;
+constexpr double mebibyte = 1024.0 * 1024.0;
+
+double resident_mebibytes() {
+    std::ifstream stream("/proc/self/statm");
+    double pages_in_all = 0.0;
+    double pages = 0.0;
+    stream >> pages_in_all >> pages;
+    return pages * 4096.0 / mebibyte;
+}
+
+/// Seconds, scaled to the photons of the real run. `path` spends its time in Trace and knows no photons: scale is 1.
+double scaled(const StageTimes& times, double scale) {
+    const double direct = times.of(Stage::Direct);
+    return direct + (times.total() - direct) * scale;
+}
+
+}  // namespace
+
+RunEstimate estimate_run(const Scene& scene, const HitPoints& hit_points, const RunSettings& settings) {
+    RunSettings probe = settings;
+    double scale = 1.0;
+    if (uses_setting(settings.method, "photons_per_pass")) {
+        probe.method.photons_per_pass = std::min(probe_photons, settings.method.photons_per_pass);
+        scale = static_cast<double>(settings.method.photons_per_pass) / static_cast<double>(probe.method.photons_per_pass);
+    }
+    probe.passes = probe_passes;
+    probe.estimated = {1, 2};
+    RunState estimated[2];
+    std::size_t next = 0;
+    const RunState passes =
+        run_method(scene, hit_points, probe, [&](const RunState& state, const Image&) { estimated[next++] = state; });
+
+    const double pass_seconds = scaled(passes.times, scale) / static_cast<double>(probe_passes);
+    const double first = std::max(0.0, scaled(estimated[0].times, scale) - pass_seconds);
+    const double second = std::max(0.0, scaled(estimated[1].times, scale) - 2.0 * pass_seconds);
+    const double growth = std::max(0.0, second - first);
+
+    RunEstimate estimate;
+    estimate.seconds = pass_seconds * static_cast<double>(settings.passes);
+    for (const std::uint64_t pass : settings.estimated)
+        estimate.seconds += first + growth * static_cast<double>(pass > 0 ? pass - 1 : 0);
+
+    const auto map = [&](std::size_t i) { return static_cast<double>(estimated[i].report.map_bytes) * scale; };
+    const double photons_of_pass =
+        static_cast<double>(passes.photons_stored) / static_cast<double>(probe_passes) * scale * sizeof(Photon);
+    const double map_growth = std::max(0.0, map(1) - map(0));
+    const double map_bytes = map_growth > 0.1 * map(0) ? map(0) + map_growth * static_cast<double>(settings.passes - 1) : map(0);
+    estimate.mebibytes = resident_mebibytes() + (map_bytes + photons_of_pass) / mebibyte;
+    return estimate;
+}
+
+}  // namespace photonlab

@@ -1,0 +1,125 @@
+#include "experiment/run_record.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "experiment/version.h"
+#include "integrators/registry.h"
+
+namespace photonlab {
+
+namespace {
+
+std::string processor_name() {
+    std::ifstream stream("/proc/cpuinfo");
+    for (std::string line; std::getline(stream, line);)
+        if (line.starts_with("model name")) return line.substr(std::min(line.size(), line.find(':') + 2));
+    return "unknown";
+}
+
+std::string utc(std::chrono::system_clock::time_point time) {
+    return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(time)));
+}
+
+Json optional_json(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+
+}  // namespace
+
+Json run_json(const RunRecord& record, const Recorder& recorder, const RunState& last, const Scene& scene,
+              const HitPoints& hit_points, const Reference* reference) {
+    const RunIdentity& identity = recorder.identity();
+    const MethodSettings& method = identity.settings.method;
+    const ProgramVersion program = program_version();
+
+    Json nonfinite_pixels = Json::array();
+    for (const NonfinitePixel& pixel : recorder.first_nonfinite_pixels())
+        nonfinite_pixels.push_back({{"pass", pixel.pass}, {"component", pixel.component}, {"x", pixel.x}, {"y", pixel.y}});
+    Json snapshots = Json::array();
+    for (const Snapshot& snapshot : record.snapshots)
+        snapshots.push_back({{"pass", snapshot.pass}, {"file", snapshot.file}});
+    const bool has_radius = uses_setting(method, "radius");
+
+    return Json{
+        {"schema", 1},
+        {"finished", true},
+        {"key", record.key},
+        {"experiment", identity.experiment},
+        {"title", record.title},
+        {"run", identity.run},
+        {"method", record.method},
+        {"settings", settings_json(method)},
+        {"seed", identity.settings.seed},
+        {"passes", identity.settings.passes},
+        {"recorded", record.recorded},
+        {"threads", identity.settings.threads},
+        {"width", identity.width},
+        {"height", identity.height},
+        {"samples_per_pixel", identity.samples_per_pixel},
+        {"scene",
+         {{"name", identity.scene},
+          {"file", record.scene_file.string()},
+          {"hash", scene.hash},
+          {"unit_length", scene.unit_length},
+          {"bounding_radius", scene.bounding_radius * scene.unit_length},
+          {"total_power", scene.total_power * scene.unit_length * scene.unit_length}}},
+        {"reference", reference ? Json{{"path", reference->path.string()},
+                                       {"key", reference->key},
+                                       {"floor_mse", optional_json(reference->floor_mse)}}
+                                : Json()},
+        {"radius",
+         {{"rule", has_radius ? Json(method.radius ? "given" : "auto") : Json()},
+          {"initial_mean", has_radius ? optional_json(last.initial_radius) : Json()},
+          {"maximum", uses_setting(method, "max_radius") ? optional_json(last.initial_radius) : Json()}}},
+        {"counters",
+         {{"hit_points", identity.hit_points},
+          {"paths_emitted", last.paths_emitted},
+          {"photons_stored", last.photons_stored},
+          {"photons_gathered", last.report.photons_gathered},
+          {"paths_cut", last.paths_cut},
+          {"power_cut", last.power_cut},
+          {"nonfinite_camera_paths", hit_points.nonfinite},
+          {"nonfinite_photons", last.nonfinite_photons + last.report.nonfinite},
+          {"nonfinite_pixels", recorder.nonfinite_pixels()}}},
+        {"nonfinite_pixels", nonfinite_pixels},
+        {"snapshots", snapshots},
+        {"program",
+         {{"name", "photonlab"},
+          {"version", program.version},
+          {"commit", program.commit},
+          {"compiler", program.compiler},
+          {"compiler_flags", program.compiler_flags}}},
+        {"processor", processor_name()},
+        {"started", utc(record.started)},
+        {"seconds", record.seconds},
+        {"working_directory", std::filesystem::current_path().string()},
+    };
+}
+
+Metadata image_metadata(const RunIdentity& identity, const RunState& state, const Scene& scene) {
+    const RunSettings& settings = identity.settings;
+    const ProgramVersion program = program_version();
+    Metadata metadata{
+        {"photonlab.experiment", identity.experiment},
+        {"photonlab.run", identity.run},
+        {"photonlab.scene", identity.scene},
+        {"photonlab.scene_hash", scene.hash},
+        {"photonlab.seed", std::to_string(settings.seed)},
+        {"photonlab.pass", std::to_string(state.pass)},
+        {"photonlab.paths_emitted", std::to_string(state.paths_emitted)},
+        {"photonlab.samples_per_pixel", std::to_string(identity.samples_per_pixel)},
+        {"photonlab.threads", std::to_string(settings.threads)},
+        {"photonlab.version", std::string(program.version)},
+        {"photonlab.commit", std::string(program.commit)},
+    };
+    for (const SettingField& field : setting_fields())
+        if (uses_setting(settings.method, field.name))
+            metadata[fmt::format("photonlab.{}", field.name)] = setting_text(settings.method, field);
+    if (state.initial_radius) metadata["photonlab.radius_initial"] = fmt::format("{}", *state.initial_radius);
+    return metadata;
+}
+
+std::string snapshot_name(std::uint64_t pass) { return fmt::format("pass-{:06}.exr", pass); }
+
+}  // namespace photonlab

@@ -1,0 +1,216 @@
+#include "image/exr.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStdIO.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfTestFile.h>
+#include <OpenEXR/ImfVersion.h>
+
+#include <cassert>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <set>
+
+#include "core/error.h"
+#include "image/temporary_file.h"
+
+namespace photonlab {
+
+namespace {
+
+constexpr const char* layers_attribute = "photonlab.layers";
+constexpr const char* total_layer = "total";
+
+// A header may claim any size, and memory for it would be asked for before the first pixel is found missing. No
+// image here comes near the first limit; the second is far above what any of OpenEXR's compressions reaches.
+constexpr std::int64_t largest_pixel_count = std::int64_t{1} << 28;
+constexpr std::int64_t largest_compression_ratio = 100'000;
+
+// Names to which OpenEXR gives a meaning even where they are strings.
+bool is_reserved(const Imf::Header& header, const std::string& name) {
+    static const std::set<std::string> reserved = {"chunkCount", "maxSamplesPerPixel", "name", "tiles",
+                                                   "type",       "version",            "view"};
+    return header.find(name) != header.end() || reserved.count(name) != 0 || name == layers_attribute;
+}
+
+// Slices over a vector of colours that covers the data window from (left, top), one a channel.
+void insert_slices(Imf::FrameBuffer& frame, const std::string& prefix, Color* pixels, int width, int left, int top) {
+    static_assert(sizeof(Color) == 3 * sizeof(float));
+    const char* suffixes[] = {"R", "G", "B"};
+    const std::size_t pixel_stride = sizeof(Color);
+    const std::size_t row_stride = pixel_stride * static_cast<std::size_t>(width);
+    for (int channel = 0; channel < 3; ++channel) {
+        // OpenEXR addresses pixel (x, y) as base + x * pixel_stride + y * row_stride. For a window away from 0 that
+        // base lies outside the vector: computed on integers, as a pointer it would be undefined.
+        const auto first = reinterpret_cast<std::uintptr_t>(&pixels[0][channel]);
+        const auto base = first - static_cast<std::uintptr_t>(static_cast<std::int64_t>(left)) * pixel_stride -
+                          static_cast<std::uintptr_t>(static_cast<std::int64_t>(top)) * row_stride;
+        frame.insert(prefix + suffixes[channel],
+                     Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(base), pixel_stride, row_stride));
+    }
+}
+
+std::string channel_names(const Imf::ChannelList& channels) {
+    std::string names;
+    for (auto channel = channels.begin(); channel != channels.end(); ++channel)
+        names += (names.empty() ? "" : ", ") + std::string(channel.name());
+    return names;
+}
+
+// The layers that the header promises, or "total" for R, G, B alone.
+std::vector<std::string> layer_names(const Imf::Header& header) {
+    const auto* list = header.findTypedAttribute<Imf::StringAttribute>(layers_attribute);
+    if (!list) return {total_layer};
+    std::vector<std::string> names;
+    std::size_t begin = 0;
+    while (true) {
+        const std::size_t comma = list->value().find(',', begin);
+        names.push_back(list->value().substr(begin, comma - begin));
+        if (comma == std::string::npos) return names;
+        begin = comma + 1;
+    }
+}
+
+void require_channels(const std::string& place, const Imf::ChannelList& channels, const std::string& prefix) {
+    for (const char* suffix : {"R", "G", "B"}) {
+        const Imf::Channel* channel = channels.findChannel(prefix + suffix);
+        if (!channel)
+            throw InputError(place, "has no channel " + prefix + suffix + "; it has: " + channel_names(channels) +
+                                        (channels.findChannel("Y") ? " (luminance is not read as grey)" : ""));
+        if (channel->xSampling != 1 || channel->ySampling != 1)
+            throw InputError(place, "channel " + prefix + suffix + " is subsampled; expected one value a pixel");
+    }
+}
+
+Image read_pixels(const std::filesystem::path& file, Metadata* metadata) {
+    const std::string place = file.string();
+    Imf::InputFile input(place.c_str());
+    if (Imf::isMultiPart(input.version())) throw InputError(place, "has several parts; expected a single image");
+    if (Imf::isNonImage(input.version())) throw InputError(place, "holds deep data; expected a flat image");
+
+    const Imf::Header& header = input.header();
+    const Imath::Box2i window = header.dataWindow();
+    const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+    const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+    const std::string size = std::to_string(width) + " x " + std::to_string(height);
+    if (width < 1 || height < 1) throw InputError(place, "has an empty data window (" + size + ")");
+
+    const std::vector<std::string> names = layer_names(header);
+    const bool layered = header.findTypedAttribute<Imf::StringAttribute>(layers_attribute) != nullptr;
+    for (const std::string& name : names) require_channels(place, header.channels(), layered ? name + "." : "");
+
+    const auto file_bytes = static_cast<std::int64_t>(std::filesystem::file_size(file));
+    if (width > largest_pixel_count / height ||
+        width * height * static_cast<std::int64_t>(names.size()) / largest_compression_ratio > file_bytes)
+        throw InputError(place, "claims " + size + " pixels, more than is read here or than its " +
+                                    std::to_string(file_bytes) + " bytes can hold");
+    if (!input.isComplete()) throw InputError(place, "is incomplete: part of its pixels is missing");
+
+    Image image;
+    image.width = static_cast<int>(width);
+    image.height = static_cast<int>(height);
+    Imf::FrameBuffer frame;
+    for (const std::string& name : names)
+        image.layers.push_back({name, std::vector<Color>(static_cast<std::size_t>(width * height))});
+    for (Layer& layer : image.layers)
+        insert_slices(frame, layered ? layer.name + "." : "", layer.pixels.data(), image.width, window.min.x,
+                      window.min.y);
+    input.setFrameBuffer(frame);
+    input.readPixels(window.min.y, window.max.y);
+
+    if (metadata) {
+        metadata->clear();
+        for (auto attribute = header.begin(); attribute != header.end(); ++attribute)
+            if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute());
+                text && std::strcmp(attribute.name(), layers_attribute) != 0)
+                (*metadata)[attribute.name()] = text->value();
+    }
+    return image;
+}
+
+// The file in memory: OpenEXR writes its table of offsets in a destructor, where a full disk cannot be reported.
+std::string encode(const Image& image, const Metadata& metadata) {
+    Imf::Header header(image.width, image.height);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    for (const auto& [name, value] : metadata) {
+        if (is_reserved(header, name)) throw InputError("metadata cannot be called \"" + name + "\": OpenEXR uses it");
+        header.insert(name, Imf::StringAttribute(value));
+    }
+
+    const bool layered = image.layers.size() != 1 || image.layers[0].name != total_layer;
+    std::vector<Layer> layers;
+    std::string names;
+    if (layered)
+        for (const Layer& layer : image.layers) names += (names.empty() ? "" : ",") + layer.name;
+    if (layered) header.insert(layers_attribute, Imf::StringAttribute(names));
+
+    std::vector<Color> sum;
+    if (layered)
+        for (const ColorD& pixel : total(image)) sum.emplace_back(pixel);
+
+    Imf::FrameBuffer frame;
+    const auto add = [&](const std::string& prefix, const std::vector<Color>& pixels) {
+        for (const char* suffix : {"R", "G", "B"}) header.channels().insert(prefix + suffix, Imf::Channel(Imf::FLOAT));
+        // OpenEXR's slices are not const, though writing a file only reads them.
+        insert_slices(frame, prefix, const_cast<Color*>(pixels.data()), image.width, 0, 0);
+    };
+    add("", layered ? sum : image.layers[0].pixels);
+    if (layered)
+        for (const Layer& layer : image.layers) add(layer.name + ".", layer.pixels);
+
+    Imf::StdOSStream stream;
+    {
+        Imf::OutputFile output(stream, header);
+        output.setFrameBuffer(frame);
+        output.writePixels(image.height);
+    }
+    return stream.str();
+}
+
+}  // namespace
+
+void write_exr(const std::filesystem::path& file, const Image& image, const Metadata& metadata) {
+    assert(image.width > 0 && image.height > 0 && !image.layers.empty());
+    for (const Layer& layer : image.layers) {
+        assert(layer.pixels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+        assert(!layer.name.empty() && layer.name.find_first_of(",.") == std::string::npos);
+        static_cast<void>(layer);    // for builds without assertions
+    }
+
+    std::string bytes;
+    try {
+        bytes = encode(image, metadata);
+    } catch (const std::exception& error) {
+        throw InputError(file.string(), std::string("cannot be written: ") + error.what());
+    }
+
+    TemporaryFile temporary(file);
+    std::ofstream output(temporary.path(), std::ios::binary);
+    output.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    output.close();
+    if (!output) throw InputError(file.string(), std::string("cannot be written: ") + std::strerror(errno));
+    temporary.rename();
+}
+
+Image read_exr(const std::filesystem::path& file, Metadata* metadata) {
+    const std::string place = file.string();
+    if (std::filesystem::is_directory(file)) throw InputError(place, "is a folder; expected an OpenEXR file");
+    if (!std::ifstream(file, std::ios::binary))
+        throw InputError(place, std::string("cannot be opened: ") + std::strerror(errno));
+    if (!Imf::isOpenExrFile(place.c_str())) throw InputError(place, "is not an OpenEXR file");
+    try {
+        return read_pixels(file, metadata);
+    } catch (const InputError&) {
+        throw;
+    } catch (const std::exception& error) {
+        throw InputError(place, std::string("cannot be read as OpenEXR: ") + error.what());
+    }
+}
+
+}  // namespace photonlab

@@ -1,0 +1,33 @@
+// OpenEXR files: linear float RGB (the sum of the layers) in channels R, G, B, each layer as NAME.R, NAME.G, NAME.B,
+// and metadata as string attributes.
+//
+// What is written can be read back to the bit: the layers are stored as they are (float32, ZIP), and the string
+// attribute `photonlab.layers` keeps their order, which the alphabetical channel list of an EXR loses. That
+// attribute is also what tells our layers from another renderer's auxiliary channels (albedo.R, ...), which do not
+// sum to the picture: without it, R, G, B alone are read.
+
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "image/image.h"
+
+namespace photonlab {
+
+using Metadata = std::map<std::string, std::string>;    ///< attribute name to value
+
+/// Writes to a temporary name beside `file` and renames, so that a half-written file never has the final name.
+/// `image` has at least one layer; one layer called "total" is written as R, G, B alone. Values that are not finite
+/// are written as they are. Throws InputError with the file's name when it cannot be written.
+void write_exr(const std::filesystem::path& file, const Image& image, const Metadata& metadata = {});
+
+/// Reads an image. Layers are those named by `photonlab.layers`, in that order; in a file without it (another
+/// renderer's), R, G, B become one layer called "total". Channels may be float, half or uint, the data window
+/// anywhere; alpha and other channels are left out. `metadata` gets every string attribute.
+/// Throws InputError: not an EXR, truncated, no R, G, B (luminance alone is refused, not guessed to be grey),
+/// several parts, deep, subsampled, a size that the file cannot hold.
+Image read_exr(const std::filesystem::path& file, Metadata* metadata = nullptr);
+
+}  // namespace photonlab

@@ -1,0 +1,35 @@
+// An image of linear radiance, as named layers of equal size whose sum is the picture.
+
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/math.h"
+
+namespace photonlab {
+
+struct Layer {
+    std::string name;
+    std::vector<Color> pixels;    ///< row by row from the top: pixels[y * width + x]
+};
+
+struct Image {
+    int width = 0;
+    int height = 0;
+    std::vector<Layer> layers;
+
+    /// The layer's pixels; nullptr when there is none of that name.
+    const std::vector<Color>* find(std::string_view name) const;
+};
+
+/// Names of the three layers of every estimator.
+inline constexpr std::string_view emission_layer = "emission";
+inline constexpr std::string_view direct_layer = "direct";
+inline constexpr std::string_view gathered_layer = "gathered";
+
+/// Sum of all layers, in double.
+std::vector<ColorD> total(const Image& image);
+
+}  // namespace photonlab

@@ -1,0 +1,74 @@
+#include "integrators/layers.h"
+
+#include <numeric>
+
+#include "core/parallel.h"
+#include "transport/direct_light.h"
+
+namespace photonlab {
+
+std::vector<Color> to_pixels(const HitPoints& hit_points, const std::vector<ColorD>& radiance, double scale) {
+    std::vector<ColorD> sums(hit_points.emission.size(), ColorD(0.0));
+    for (std::size_t i = 0; i < hit_points.points.size(); ++i) {
+        const HitPoint& point = hit_points.points[i];
+        sums[point.pixel] += radiance[i] * ColorD(point.weight) * scale;
+    }
+    return {sums.begin(), sums.end()};
+}
+
+Image make_layers(const HitPoints& hit_points, std::vector<Color> direct, std::vector<Color> gathered) {
+    std::vector<Color> emission(hit_points.emission.begin(), hit_points.emission.end());
+    return {hit_points.width,
+            hit_points.height,
+            {{std::string(emission_layer), std::move(emission)},
+             {std::string(direct_layer), std::move(direct)},
+             {std::string(gathered_layer), std::move(gathered)}}};
+}
+
+void set_radii(IntegratorReport& report, const std::vector<double>& radii, double unit_length) {
+    if (radii.empty()) return;
+    const auto [smallest, largest] = std::minmax_element(radii.begin(), radii.end());
+    const double sum = std::accumulate(radii.begin(), radii.end(), 0.0);
+    report.radius_min = *smallest * unit_length;
+    report.radius_mean = sum / static_cast<double>(radii.size()) * unit_length;
+    report.radius_max = *largest * unit_length;
+}
+
+DirectLight::DirectLight(const IntegratorContext& context, const MethodSettings& settings)
+    : context_(context),
+      samples_(settings.direct == DirectMode::Sampled ? settings.direct_samples : 0),
+      max_depth_(settings.max_depth) {
+    if (samples_ > 0) sums_.assign(context.hit_points.points.size(), ColorD(0.0));
+}
+
+void DirectLight::add_samples(std::uint64_t pass, std::vector<ColorD>& sums) const {
+    const std::vector<HitPoint>& points = context_.hit_points.points;
+    parallel_for(block_count(points.size(), hit_points_per_block), context_.threads, [&](std::size_t block) {
+        const BlockRange range = block_range(block, points.size(), hit_points_per_block);
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            if (!depth_allows(max_depth_, points[i].camera_edges + 1u)) continue;
+            RandomStream random(context_.seed, RandomPurpose::DirectLight, pass, i);
+            const Surface surface = surface_at(context_.scene, points[i]);
+            ColorD sum(0.0);
+            for (int sample = 0; sample < samples_; ++sample)
+                sum += sample_direct_light(context_.scene, surface, points[i].outgoing, random);
+            sums[i] += sum / static_cast<double>(samples_);
+        }
+    });
+}
+
+void DirectLight::run_pass(std::uint64_t pass) {
+    if (samples_ == 0) return;
+    add_samples(pass, sums_);
+    ++passes_;
+}
+
+std::vector<Color> DirectLight::layer() const {
+    if (samples_ == 0) return std::vector<Color>(context_.hit_points.emission.size(), Color(0.0f));
+    if (passes_ > 0) return to_pixels(context_.hit_points, sums_, 1.0 / static_cast<double>(passes_));
+    std::vector<ColorD> once(sums_.size(), ColorD(0.0));
+    add_samples(0, once);
+    return to_pixels(context_.hit_points, once, 1.0);
+}
+
+}  // namespace photonlab

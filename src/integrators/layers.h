@@ -1,0 +1,48 @@
+// What the integrators share: from values at hit points to the layers of an image, and direct light averaged over passes.
+
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "image/image.h"
+#include "integrators/integrator.h"
+
+namespace photonlab {
+
+inline constexpr std::size_t hit_points_per_block = 256;    ///< handed to a thread at a time
+
+/// Sums `radiance` (one value a hit point) times `scale` into pixels, each value times its point's weight, in the order of
+/// the points.
+std::vector<Color> to_pixels(const HitPoints& hit_points, const std::vector<ColorD>& radiance, double scale);
+
+/// The image of three layers; emission comes from the hit points.
+Image make_layers(const HitPoints& hit_points, std::vector<Color> direct, std::vector<Color> gathered);
+
+/// Smallest, mean and largest of `radii` (unit box) in scene units; leaves the report alone when there are none.
+void set_radii(IntegratorReport& report, const std::vector<double>& radii, double unit_length);
+
+/// Direct light at every hit point: `samples` shadow rays each in every pass, averaged over passes. With
+/// DirectMode::Photons it stays black and costs nothing.
+class DirectLight {
+public:
+    DirectLight(const IntegratorContext& context, const MethodSettings& settings);
+
+    void run_pass(std::uint64_t pass);
+
+    /// The layer: mean over the passes so far. Before the first pass, one sampling made for this call alone.
+    std::vector<Color> layer() const;
+
+    std::uint64_t bytes() const { return sums_.size() * sizeof(ColorD); }
+
+private:
+    void add_samples(std::uint64_t pass, std::vector<ColorD>& sums) const;
+
+    const IntegratorContext context_;
+    int samples_;                  // 0: photons carry direct light
+    int max_depth_;
+    std::uint64_t passes_ = 0;
+    std::vector<ColorD> sums_;     // one a hit point
+};
+
+}  // namespace photonlab

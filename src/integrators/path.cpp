@@ -1,0 +1,132 @@
+#include "integrators/path.h"
+
+#include "core/parallel.h"
+#include "integrators/layers.h"
+#include "scene/emitter.h"
+#include "transport/direct_light.h"
+
+namespace photonlab {
+
+namespace {
+
+constexpr std::uint32_t roulette_after = 3;      // reflections: most paths of a bright scene matter until then
+constexpr float highest_survival = 0.99f;
+constexpr std::uint32_t edge_cap = 10'000;
+
+/// What one path found: light reflected once at the hit point, and light reflected there after other reflections.
+struct PathSample {
+    ColorD direct = ColorD(0.0);
+    ColorD gathered = ColorD(0.0);
+};
+
+PathSample trace_path(const Scene& scene, const HitPoint& point, int max_depth, RandomStream& random) {
+    PathSample result;
+    Surface surface = surface_at(scene, point);
+    Vector outgoing = point.outgoing;
+    Color throughput(1.0f);
+
+    for (std::uint32_t reflections = 1; point.camera_edges + reflections < edge_cap; ++reflections) {
+        // Light found from here has one edge more than the path so far: camera_edges + reflections in all.
+        if (!depth_allows(max_depth, point.camera_edges + reflections)) break;
+        ColorD& layer = reflections == 1 ? result.direct : result.gathered;
+
+        if (const auto light = connect_to_light(scene, surface, outgoing, random)) {
+            const double weight =
+                light->light_density > 0.0 ? light->light_density / (light->light_density + light->bsdf_density) : 1.0;
+            layer += ColorD(throughput) * light->contribution * weight;
+        }
+
+        const auto bounce = sample(*surface.material, surface.frame.to_local(outgoing), random.next_2d());
+        const float survival_draw = random.next();
+        if (!bounce) break;
+        const Vector direction = surface.frame.to_world(bounce->incoming);
+        if (!sides_agree(surface, direction)) break;
+        throughput *= bounce->weight;
+
+        const auto hit =
+            intersect(scene, {offset_from_surface(surface.position, surface.geometric_normal, direction), direction});
+        if (!hit) break;
+        const ColorD emitted = emitted_radiance(scene, *hit, -direction);
+        if (!is_black(emitted)) {
+            const double choice = scene.emitters[scene.shapes[hit->shape].emitter].choice_probability;
+            const double light_density = choice * direct_density(scene, surface.position, direction, *hit);
+            const double bsdf_density = bounce->density;
+            layer += ColorD(throughput) * emitted * (bsdf_density / (bsdf_density + light_density));
+        }
+
+        if (reflections >= roulette_after) {
+            const float survival = std::min(max_channel(throughput), highest_survival);
+            if (survival_draw >= survival) break;
+            throughput /= survival;
+        }
+        const auto next = orient(scene, *hit, -direction);
+        if (!next) break;
+        surface = *next;
+        outgoing = -direction;
+    }
+    return result;
+}
+
+class PathTracing : public Integrator {
+public:
+    PathTracing(const MethodSettings& settings, const IntegratorContext& context)
+        : max_depth_(settings.max_depth), context_(context), sums_(context.hit_points.points.size()) {}
+
+    void run_pass(std::uint64_t pass, const PhotonPass&, const StageListener& enter) override {
+        enter(Stage::Trace);
+        add_paths(pass, sums_);
+        ++passes_;
+    }
+
+    Image estimate(const StageListener& enter) override {
+        enter(Stage::Trace);
+        if (passes_ > 0) return image_of(sums_, 1.0 / static_cast<double>(passes_), true);
+        std::vector<PathSample> once(sums_.size());
+        add_paths(0, once);
+        return image_of(once, 1.0, false);
+    }
+
+    IntegratorReport report() const override {
+        IntegratorReport report;
+        report.hit_point_bytes = sums_.size() * (sizeof(HitPoint) + sizeof(PathSample));
+        return report;
+    }
+
+private:
+    void add_paths(std::uint64_t pass, std::vector<PathSample>& sums) const {
+        const std::vector<HitPoint>& points = context_.hit_points.points;
+        parallel_for(block_count(points.size(), hit_points_per_block), context_.threads, [&](std::size_t block) {
+            const BlockRange range = block_range(block, points.size(), hit_points_per_block);
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                RandomStream random(context_.seed, context_.path_purpose, pass, i);
+                const PathSample path = trace_path(context_.scene, points[i], max_depth_, random);
+                sums[i].direct += path.direct;
+                sums[i].gathered += path.gathered;
+            }
+        });
+    }
+
+    Image image_of(const std::vector<PathSample>& sums, double scale, bool with_gathered) const {
+        std::vector<ColorD> direct(sums.size());
+        std::vector<ColorD> gathered(sums.size(), ColorD(0.0));
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+            direct[i] = sums[i].direct;
+            if (with_gathered) gathered[i] = sums[i].gathered;
+        }
+        return make_layers(context_.hit_points, to_pixels(context_.hit_points, direct, scale),
+                           to_pixels(context_.hit_points, gathered, scale));
+    }
+
+    const int max_depth_;
+    const IntegratorContext context_;
+    std::vector<PathSample> sums_;    // one a hit point, over passes
+    std::uint64_t passes_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_path(const MethodSettings& settings, const IntegratorContext& context) {
+    return std::make_unique<PathTracing>(settings, context);
+}
+
+}  // namespace photonlab

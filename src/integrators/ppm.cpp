@@ -1,0 +1,100 @@
+#include "integrators/ppm.h"
+
+#include "core/parallel.h"
+#include "gather/photon_map.h"
+#include "gather/radius_schedule.h"
+#include "integrators/density_estimate.h"
+#include "integrators/layers.h"
+
+namespace photonlab {
+
+namespace {
+
+constexpr double smallest_squared_radius = PhotonMap::minimum_radius * PhotonMap::minimum_radius;
+
+class ProgressivePhotonMapping : public Integrator {
+public:
+    ProgressivePhotonMapping(const MethodSettings& settings, const IntegratorContext& context)
+        : settings_(settings), context_(context), direct_(context, settings), statistics_(context.hit_points.points.size()) {
+        for (std::size_t i = 0; i < statistics_.size(); ++i) {
+            const double radius = initial_radius(settings, context.scene, context.hit_points, i);
+            statistics_[i].squared_radius = radius * radius;
+        }
+    }
+
+    void run_pass(std::uint64_t pass, const PhotonPass& photons, const StageListener& enter) override {
+        enter(Stage::Build);
+        const PhotonMap map(photons.photons);
+        report_.map_bytes = std::max(report_.map_bytes, map.bytes());
+        report_.nonfinite += map.nonfinite();
+
+        enter(Stage::Gather);
+        const std::size_t blocks = block_count(statistics_.size(), hit_points_per_block);
+        std::vector<std::uint64_t> gathered(blocks, 0);
+        parallel_for(blocks, context_.threads, [&](std::size_t block) {
+            const BlockRange range = block_range(block, statistics_.size(), hit_points_per_block);
+            for (std::size_t i = range.begin; i < range.end; ++i)
+                gathered[block] += update(context_.hit_points.points[i], map, photons.paths_emitted, pass, statistics_[i]);
+        });
+        for (const std::uint64_t count : gathered) report_.photons_gathered += count;
+
+        enter(Stage::Direct);
+        direct_.run_pass(pass);
+    }
+
+    Image estimate(const StageListener& enter) override {
+        enter(Stage::Direct);
+        std::vector<Color> direct = direct_.layer();
+        enter(Stage::Gather);
+        std::vector<ColorD> radiance(statistics_.size());
+        for (std::size_t i = 0; i < statistics_.size(); ++i) radiance[i] = statistics_[i].estimate;
+        return make_layers(context_.hit_points, std::move(direct),
+                           to_pixels(context_.hit_points, radiance, context_.scene.total_power));
+    }
+
+    IntegratorReport report() const override {
+        IntegratorReport report = report_;
+        report.hit_point_bytes = context_.hit_points.points.size() * sizeof(HitPoint) +
+                                 statistics_.size() * sizeof(GatherStatistics) + direct_.bytes();
+        std::vector<double> radii(statistics_.size());
+        for (std::size_t i = 0; i < radii.size(); ++i) radii[i] = std::sqrt(statistics_[i].squared_radius);
+        set_radii(report, radii, context_.scene.unit_length);
+        return report;
+    }
+
+private:
+    /// One pass at one hit point; returns the number of photons found.
+    std::uint64_t update(const HitPoint& point, const PhotonMap& map, std::uint64_t paths, std::uint64_t pass,
+                         GatherStatistics& statistics) const {
+        const FluxSum sum = gather_within(map, context_.scene, point, std::sqrt(statistics.squared_radius),
+                                          settings_.kernel, settings_.max_depth);
+        const double area = pi * statistics.squared_radius;
+        const ColorD estimate = sum.flux() / (area * static_cast<double>(paths));
+        statistics.estimate += (estimate - statistics.estimate) / static_cast<double>(pass);
+
+        const double found = static_cast<double>(sum.count());
+        if (settings_.schedule == ScheduleName::Hachisuka) {
+            statistics.squared_radius *= hachisuka_shrink(settings_.alpha, statistics.count, found);
+            statistics.count += settings_.alpha * found;
+        } else {
+            statistics.squared_radius *= knaus_zwicker_shrink(settings_.alpha, pass);
+            statistics.count += found;
+        }
+        statistics.squared_radius = std::max(statistics.squared_radius, smallest_squared_radius);
+        return sum.count();
+    }
+
+    const MethodSettings settings_;
+    const IntegratorContext context_;
+    DirectLight direct_;
+    std::vector<GatherStatistics> statistics_;    // joined with the hit points by index
+    IntegratorReport report_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_ppm(const MethodSettings& settings, const IntegratorContext& context) {
+    return std::make_unique<ProgressivePhotonMapping>(settings, context);
+}
+
+}  // namespace photonlab

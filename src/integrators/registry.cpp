@@ -1,0 +1,70 @@
+#include "integrators/registry.h"
+
+#include <algorithm>
+
+#include "integrators/path.h"
+#include "integrators/photonmapper.h"
+#include "integrators/ppm.h"
+
+namespace photonlab {
+
+const std::vector<IntegratorKind>& integrator_kinds() {
+    static const std::vector<IntegratorKind> kinds{
+        {"path", false, {"max_depth"}, make_path},
+        {"photonmapper",
+         true,
+         {"mode", "k", "radius", "max_radius", "kernel", "direct", "direct_samples", "max_depth", "photons_per_pass"},
+         make_photonmapper},
+        {"ppm",
+         true,
+         {"schedule", "alpha", "radius", "kernel", "direct", "direct_samples", "max_depth", "photons_per_pass"},
+         make_ppm},
+    };
+    return kinds;
+}
+
+const IntegratorKind& find_integrator_kind(std::string_view name) {
+    std::string known;
+    for (const IntegratorKind& kind : integrator_kinds()) {
+        if (kind.name == name) return kind;
+        known += (known.empty() ? "" : ", ") + std::string(kind.name);
+    }
+    throw InputError("unknown integrator \"" + std::string(name) + "\"; known here: " + known);
+}
+
+bool uses_setting(const MethodSettings& settings, std::string_view field) {
+    if (field == "integrator") return true;
+    const auto& used = find_integrator_kind(settings.integrator).settings;
+    if (std::find(used.begin(), used.end(), field) == used.end()) return false;
+    const bool photonmapper = settings.integrator == "photonmapper";
+    if (field == "k" || field == "max_radius") return settings.mode == GatherMode::Nearest;
+    if (field == "radius" && photonmapper) return settings.mode == GatherMode::Radius;
+    if (field == "direct_samples") return settings.direct == DirectMode::Sampled;
+    return true;
+}
+
+void require_valid(const MethodSettings& settings) {
+    const auto require = [](bool valid, const std::string& expectation) {
+        if (!valid) throw InputError(expectation);
+    };
+    const auto is_length = [](const std::optional<double>& length) {
+        return !length || (std::isfinite(*length) && *length > 0.0);
+    };
+    find_integrator_kind(settings.integrator);
+    require_alpha(settings.alpha);
+    require(settings.k >= 2, "k: expected at least 2 photons, got " + std::to_string(settings.k));
+    require(is_length(settings.radius), "radius: expected \"auto\" or a length above 0 in scene units");
+    require(is_length(settings.max_radius), "max_radius: expected \"auto\" or a length above 0 in scene units");
+    require(settings.direct_samples >= 1,
+            "direct_samples: expected at least 1, got " + std::to_string(settings.direct_samples));
+    require(settings.max_depth == -1 || settings.max_depth >= 1,
+            "max_depth: expected -1 (unlimited) or at least 1, got " + std::to_string(settings.max_depth));
+    require(settings.photons_per_pass >= 1, "photons_per_pass: expected at least 1");
+}
+
+std::unique_ptr<Integrator> make_integrator(const MethodSettings& settings, const IntegratorContext& context) {
+    require_valid(settings);
+    return find_integrator_kind(settings.integrator).make(settings, context);
+}
+
+}  // namespace photonlab

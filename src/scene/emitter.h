@@ -1,0 +1,50 @@
+// Light sources: choosing one by power, and drawing where on it and in which direction light leaves.
+//
+// The choice is by mean_channel(power), so it does not change when all light is multiplied by a constant.
+
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/math.h"
+#include "scene/scene.h"
+
+namespace photonlab {
+
+/// Index of the emitter chosen by power; u in [0, 1). The scene must have one.
+std::uint32_t choose_emitter(const Scene& scene, double u);
+
+/// Light leaving an emitter: the start of a photon path.
+struct EmissionSample {
+    Ray ray;            ///< its origin already moved off the emitter's surface
+    Color weight;       ///< flux of this sample relative to Scene::total_power, the choice of light included:
+                        ///< its mean over samples and channels is 1
+};
+
+/// Emits from `emitter`: position uniform on its area, direction by the cosine (area light) or uniform (point light).
+EmissionSample sample_emission(const Scene& scene, std::uint32_t emitter, const Imath::V2f& u_position,
+                               double u_triangle, const Imath::V2f& u_direction);
+
+/// A point on an emitter as seen from a receiver.
+struct DirectSample {
+    Vector position;           ///< on the emitter, already moved off its surface towards the receiver
+    Vector direction;          ///< unit, from the receiver to `position`
+    ColorD radiance;           ///< area light: radiance towards the receiver. Point light: intensity / distance^2
+    double density;            ///< per steradian at the receiver, without the choice of light; 1 for a point light
+    bool is_delta;             ///< a point light: no other technique can find it
+};
+
+/// Draws a point on `emitter` to light `receiver`: spheres by the solid angle of their visible cap, other shapes
+/// uniform in area. Empty when the point drawn does not face the receiver.
+std::optional<DirectSample> sample_direct(const Scene& scene, std::uint32_t emitter, const Vector& receiver,
+                                          const Imath::V2f& u, double u_triangle);
+
+/// Density per steradian with which sample_direct() draws, from `receiver`, the emitting point at `hit` that was found
+/// in `direction` (unit): without the choice of light; 0 when the shape does not emit that way.
+double direct_density(const Scene& scene, const Vector& receiver, const Vector& direction, const Hit& hit);
+
+/// Radiance that leaves the hit point towards `outgoing` (unit, away from the surface); 0 where nothing emits.
+ColorD emitted_radiance(const Scene& scene, const Hit& hit, const Vector& outgoing);
+
+}  // namespace photonlab

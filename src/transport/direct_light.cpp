@@ -1,0 +1,36 @@
+#include "transport/direct_light.h"
+
+#include "scene/emitter.h"
+
+namespace photonlab {
+
+ColorD sample_direct_light(const Scene& scene, const Surface& surface, const Vector& outgoing, RandomStream& random) {
+    const std::optional<ConnectedLight> light = connect_to_light(scene, surface, outgoing, random);
+    return light ? light->contribution : ColorD(0.0);
+}
+
+std::optional<ConnectedLight> connect_to_light(const Scene& scene, const Surface& surface, const Vector& outgoing,
+                                               RandomStream& random) {
+    if (scene.emitters.empty()) return std::nullopt;
+    const std::uint32_t emitter = choose_emitter(scene, random.next_double());
+    const Imath::V2f u = random.next_2d();
+    const double u_triangle = random.next_double();
+    const std::optional<DirectSample> light = sample_direct(scene, emitter, surface.position, u, u_triangle);
+    if (!light || !sides_agree(surface, light->direction)) return std::nullopt;
+
+    const Vector local_outgoing = surface.frame.to_local(outgoing);
+    const Vector local_incoming = surface.frame.to_local(light->direction);
+    const Color f = evaluate(*surface.material, local_outgoing, local_incoming);
+    if (is_black(f)) return std::nullopt;
+    const Vector origin = offset_from_surface(surface.position, surface.geometric_normal, light->direction);
+    if (is_occluded(scene, origin, light->position)) return std::nullopt;
+
+    const double probability = scene.emitters[emitter].choice_probability;
+    const double cosine = std::abs(local_incoming.z);
+    return ConnectedLight{
+        .contribution = light->radiance * ColorD(f) * (cosine / (light->density * probability)),
+        .light_density = light->is_delta ? 0.0 : light->density * probability,
+        .bsdf_density = light->is_delta ? 0.0 : density(*surface.material, local_outgoing, local_incoming)};
+}
+
+}  // namespace photonlab

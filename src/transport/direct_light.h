@@ -1,0 +1,31 @@
+// Direct light at a surface: a light chosen by power, a point on it, a shadow ray. Surfaces of glass block shadow rays;
+// what reaches a point through them is the photons' to bring.
+
+#pragma once
+
+#include <optional>
+
+#include "core/math.h"
+#include "core/random.h"
+#include "scene/scene.h"
+
+namespace photonlab {
+
+/// One unoccluded connection of a surface to a light.
+struct ConnectedLight {
+    ColorD contribution;      ///< radiance reflected towards the viewer, divided by the density of the connection
+    double light_density;     ///< per steradian, with which this direction was drawn, the choice of light included;
+                              ///< 0 for a point light, which no other technique can find
+    double bsdf_density;      ///< per steradian, with which the material would have drawn it; 0 for a point light
+};
+
+/// Connects `surface` to one point on one light; empty when no light comes from there. Always draws the same number of
+/// random numbers.
+std::optional<ConnectedLight> connect_to_light(const Scene& scene, const Surface& surface, const Vector& outgoing,
+                                               RandomStream& random);
+
+/// One sample of the radiance that leaves `surface` towards `outgoing` (unit, world) after light came straight from a
+/// light source. Unbiased; its noise is that of the choice of light and of the point on it.
+ColorD sample_direct_light(const Scene& scene, const Surface& surface, const Vector& outgoing, RandomStream& random);
+
+}  // namespace photonlab

@@ -1,0 +1,51 @@
+// The camera pass: where each sample position of the image sees a non-specular surface. Every integrator, PM, PPM and
+// the path tracer alike, starts from these same points, so what differs between them is what they estimate there
+// and nothing else.
+//
+// [Hachisuka et al. 2008, "Progressive Photon Mapping": the eye pass]
+
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/math.h"
+#include "scene/scene.h"
+
+namespace photonlab {
+
+/// A point to gather at. Const once made; what changes from pass to pass is in GatherStatistics.
+struct HitPoint {
+    Vector position;
+    Vector normal;                 ///< shading normal, unit, facing `outgoing`
+    Vector geometric_normal;       ///< unit, facing `outgoing`
+    Vector outgoing;               ///< unit, towards the camera's side of the path
+    Color weight;                  ///< path throughput from here to the pixel, times the sample's share of the pixel
+    std::uint32_t pixel;           ///< y * width + x
+    std::uint16_t material;        ///< index into Scene::materials
+    std::uint16_t camera_edges;    ///< edges of the path from the camera to here; 1 when seen directly
+};
+
+/// The result of the camera pass.
+struct HitPoints {
+    int width = 0;
+    int height = 0;
+    int samples_per_pixel = 1;
+    std::vector<HitPoint> points;      ///< tile by tile, so that neighbours in the list are neighbours in space
+    std::vector<float> footprints;     ///< one a point, unit box: unfolded distance from the camera times the pixel's angle
+    std::vector<ColorD> emission;      ///< one a pixel: radiance that reaches the camera without a bounce at a hit point
+    std::uint64_t nonfinite = 0;       ///< camera paths that met a non-finite value
+};
+
+/// Traces the deterministic grid of sample positions: `samples_per_pixel` is a perfect square, 1 is the pixel's centre.
+HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int threads);
+
+/// True when a path of `edges` edges from camera to light may count; max_depth -1 is unlimited.
+inline bool depth_allows(int max_depth, std::uint32_t edges) {
+    return max_depth < 0 || edges <= static_cast<std::uint32_t>(max_depth);
+}
+
+/// The hit point as a surface to be shaded.
+Surface surface_at(const Scene& scene, const HitPoint& point);
+
+}  // namespace photonlab

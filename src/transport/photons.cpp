@@ -1,0 +1,98 @@
+#include "transport/photons.h"
+
+#include "core/parallel.h"
+#include "core/random.h"
+#include "scene/emitter.h"
+
+namespace photonlab {
+
+namespace {
+
+constexpr std::size_t block_size = 1024;         // paths
+constexpr std::uint32_t edge_cap = 10'000;       // ends light that is trapped; what it cuts is counted
+constexpr float highest_survival = 0.99f;        // so that a path among white surfaces ends, too
+
+/// Asymmetry of the BSDF's adjoint under shading normals, for a photon that arrives against `arriving` and leaves along
+/// `leaving`: |arriving.ns leaving.ng| / |arriving.ng leaving.ns|. 1 on a flat surface. [Veach 1996, section 5.3]
+float adjoint_correction(const Surface& surface, const Vector& arriving, const Vector& leaving) {
+    const Vector& shading = surface.frame.normal;
+    const Vector& geometric = surface.geometric_normal;
+    return std::abs(arriving.dot(shading) * leaving.dot(geometric)) /
+           std::abs(arriving.dot(geometric) * leaving.dot(shading));
+}
+
+void trace_path(const Scene& scene, const PhotonSettings& settings, std::uint64_t pass, std::uint64_t index,
+                PhotonPass& result) {
+    RandomStream random(settings.seed, RandomPurpose::PhotonPaths, pass, index);
+    const std::uint32_t emitter = choose_emitter(scene, random.next_double());
+    const Imath::V2f u_position = random.next_2d();
+    const double u_triangle = random.next_double();
+    const Imath::V2f u_direction = random.next_2d();
+    const EmissionSample emission = sample_emission(scene, emitter, u_position, u_triangle, u_direction);
+
+    Ray ray = emission.ray;
+    Color power = emission.weight;
+    // The camera's side of a path has at least one edge, so a photon may have at most max_depth - 1.
+    const std::uint32_t edge_limit = settings.max_depth < 0 ? edge_cap : static_cast<std::uint32_t>(std::max(0, settings.max_depth - 1));
+    for (std::uint32_t edges = 1; edges <= edge_limit; ++edges) {
+        const std::optional<Hit> hit = intersect(scene, ray);
+        if (!hit) return;
+        const Vector arriving = -ray.direction;
+        const std::optional<Surface> surface = orient(scene, *hit, arriving);
+        if (!surface) return;
+
+        if (edges > 1 || settings.store_direct) {
+            const Vector& normal = surface->frame.normal;
+            const float slant = std::abs(arriving.dot(normal) / arriving.dot(surface->geometric_normal));
+            const Photon photon{surface->position, arriving, normal, power * slant, edges};
+            if (is_finite(photon.position) && is_finite(photon.incoming) && is_finite(photon.power))
+                result.photons.push_back(photon);
+            else
+                ++result.nonfinite;
+        }
+        if (edges == edge_limit) break;
+
+        const std::optional<BsdfSample> bounce =
+            sample(*surface->material, surface->frame.to_local(arriving), random.next_2d());
+        const float survival_draw = random.next();
+        if (!bounce) return;
+        const float survival = std::min(max_channel(bounce->weight), highest_survival);
+        if (survival_draw >= survival) return;
+        const Vector leaving = surface->frame.to_world(bounce->incoming);
+        if (!sides_agree(*surface, leaving)) return;
+        power *= bounce->weight * (adjoint_correction(*surface, arriving, leaving) / survival);
+        ray = {offset_from_surface(surface->position, surface->geometric_normal, leaving), leaving};
+    }
+    if (settings.max_depth < 0) {
+        ++result.paths_cut;
+        result.power_cut += mean_channel(ColorD(power));
+    }
+}
+
+}  // namespace
+
+PhotonPass trace_photons(const Scene& scene, const PhotonSettings& settings, std::uint64_t pass, int threads) {
+    PhotonPass result;
+    result.paths_emitted = settings.paths;
+    if (scene.emitters.empty()) return result;
+
+    std::vector<PhotonPass> blocks(block_count(settings.paths, block_size));
+    parallel_for(blocks.size(), threads, [&](std::size_t block) {
+        const BlockRange range = block_range(block, settings.paths, block_size);
+        for (std::size_t index = range.begin; index < range.end; ++index)
+            trace_path(scene, settings, pass, index, blocks[block]);
+    });
+
+    std::size_t stored = 0;
+    for (const PhotonPass& block : blocks) stored += block.photons.size();
+    result.photons.reserve(stored);
+    for (const PhotonPass& block : blocks) {
+        result.photons.insert(result.photons.end(), block.photons.begin(), block.photons.end());
+        result.paths_cut += block.paths_cut;
+        result.power_cut += block.power_cut;
+        result.nonfinite += block.nonfinite;
+    }
+    return result;
+}
+
+}  // namespace photonlab

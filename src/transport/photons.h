@@ -1,0 +1,46 @@
+// The photon pass: paths from the lights, leaving a photon wherever they meet a surface that can be gathered at.
+//
+// Paths are made in blocks that are joined in path order, and every path draws from a random stream of its own, so the
+// photons of a pass are the same, in the same order, at any thread count.
+//
+// [Jensen 2001, "Realistic Image Synthesis Using Photon Mapping", chapters 4 and 5]
+
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/math.h"
+#include "scene/scene.h"
+
+namespace photonlab {
+
+struct Photon {
+    Vector position;
+    Vector incoming;    ///< unit, towards where the photon came from
+    Vector normal;      ///< shading normal, unit, on the side on which the photon arrived
+    Color power;        ///< flux that one emitted path carries here, relative to Scene::total_power; not divided by the
+                        ///< number of paths; times |incoming.normal| / |incoming.geometric normal| (Veach 1996)
+    std::uint32_t edges;    ///< edges of the path from the light to here; 1 when it came straight from the light
+};
+
+/// Photons of one pass, or of several passes joined.
+struct PhotonPass {
+    std::vector<Photon> photons;          ///< in path order
+    std::uint64_t paths_emitted = 0;
+    std::uint64_t paths_cut = 0;          ///< ended by the cap of 10,000 edges
+    double power_cut = 0.0;               ///< what those still carried: mean channel, relative, summed over paths
+    std::uint64_t nonfinite = 0;          ///< photons refused for a non-finite position, direction or power
+};
+
+struct PhotonSettings {
+    std::uint64_t paths = 100'000;    ///< emitted a pass
+    std::uint64_t seed = 1;
+    int max_depth = -1;               ///< edges from camera to light, as in Mitsuba; a photon's own edges stay below it
+    bool store_direct = false;        ///< also store photons that came straight from the light
+};
+
+/// Traces pass `pass` (counted from 1). A scene without light gives no photons and still counts its paths.
+PhotonPass trace_photons(const Scene& scene, const PhotonSettings& settings, std::uint64_t pass, int threads);
+
+}  // namespace photonlab
