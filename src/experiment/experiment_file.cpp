@@ -19,7 +19,7 @@ namespace photonlab {
 
 namespace {
 
-constexpr std::int64_t most_passes = 0xffffffff;    // a random stream's pass has 32 bits
+constexpr std::int64_t most_passes = 0xffffffff;  // a random stream's pass has 32 bits
 constexpr std::int64_t largest_side = 65536;
 constexpr std::int64_t most_threads = 1024;
 constexpr std::size_t most_runs = 100'000;
@@ -65,8 +65,9 @@ public:
             throw InputError(fmt::format("{}:{}", experiment_.file.string(), error.source().begin.line),
                              std::string(error.description()));
         }
-        std::vector<std::string_view> known{"title",     "scenes",     "method",            "seeds",  "passes", "record",
-                                            "snapshots", "resolution", "samples_per_pixel", "threads"};
+        std::vector<std::string_view> known{
+            "title",  "scenes", "method", "seeds", "passes", "record", "snapshots", "resolution", "samples_per_pixel",
+            "threads"};
         for (const SettingField& field : setting_fields()) known.push_back(field.name);
         require_known(root, known);
 
@@ -76,7 +77,8 @@ public:
         read_seeds(root);
         read_scenes(root);
         for (const SettingField& field : setting_fields())
-            if (const toml::node* node = root.get(field.name)) defaults_[std::string(field.name)] = axis(*node, field.name);
+            if (const toml::node* node = root.get(field.name))
+                defaults_[std::string(field.name)] = axis(*node, field.name);
         read_methods(root);
         return std::move(experiment_);
     }
@@ -92,7 +94,8 @@ private:
             if (std::find(known.begin(), known.end(), std::string_view(key.str())) != known.end()) continue;
             std::string list;
             for (const std::string_view name : known) list += (list.empty() ? "" : ", ") + std::string(name);
-            throw InputError(place(node), fmt::format("unknown key \"{}\"; known here: {}", std::string_view(key.str()), list));
+            throw InputError(place(node),
+                             fmt::format("unknown key \"{}\"; known here: {}", std::string_view(key.str()), list));
         }
     }
 
@@ -166,8 +169,9 @@ private:
             if (rule == "all") {
                 for (std::uint64_t pass = 1; pass <= experiment_.passes; ++pass) recorded.push_back(pass);
             } else if (rule != "powers-of-two") {
-                throw InputError(place(*record),
-                                 fmt::format("unknown record \"{}\"; known here: all, powers-of-two, a list of passes", rule));
+                throw InputError(
+                    place(*record),
+                    fmt::format("unknown record \"{}\"; known here: all, powers-of-two, a list of passes", rule));
             }
         } else if (record) {
             recorded = integers(*record, "record", 0, static_cast<std::int64_t>(written));
@@ -226,7 +230,8 @@ private:
                 require_known(*table, {"path", "reference", "resolution", "name"});
                 if (!table->contains("path")) throw InputError(place(node), "scene: path is missing");
                 scene.file = path(*table->get("path"), "path");
-                if (const toml::node* reference = table->get("reference")) scene.reference = path(*reference, "reference");
+                if (const toml::node* reference = table->get("reference"))
+                    scene.reference = path(*reference, "reference");
                 if (const toml::node* pixels = table->get("resolution")) scene.resolution = resolution(*pixels);
                 if (const toml::node* name = table->get("name")) scene.name = file_safe(string(*name, "name"));
             } else {
@@ -236,7 +241,8 @@ private:
                 throw InputError(place(node), scene.file.string() + " is a folder; expected a scene file in it");
             if (scene.name.empty()) {
                 const bool in_folder = scene.file.filename() == "scene.xml";
-                const std::filesystem::path named = in_folder ? std::filesystem::absolute(scene.file).parent_path() : scene.file;
+                const std::filesystem::path named =
+                    in_folder ? std::filesystem::absolute(scene.file).parent_path() : scene.file;
                 scene.name = file_safe(in_folder ? named.filename().string() : named.stem().string());
             }
             experiment_.scenes.push_back(std::move(scene));
@@ -297,7 +303,8 @@ private:
             });
             const bool varies = values.values.size() > 1;
             const std::string text = plain_text(field.write(chosen.values));
-            add_runs(scene, method, index + 1, chosen, varies ? fmt::format("{}_{}-{}", swept, field.name, text) : swept);
+            add_runs(scene, method, index + 1, chosen,
+                     varies ? fmt::format("{}_{}-{}", swept, field.name, text) : swept);
         }
     }
 
@@ -313,8 +320,10 @@ private:
             run.settings = settings;
             run.seed = seed;
             if (!names_.insert(run.name).second)
-                throw InputError(method.place, fmt::format("two runs are called {}: give methods and scenes names of their "
-                                                           "own, and values and seeds once", run.name));
+                throw InputError(method.place,
+                                 fmt::format("two runs are called {}: give methods and scenes names of their "
+                                             "own, and values and seeds once",
+                                             run.name));
             if (experiment_.runs.size() == most_runs)
                 throw InputError(method.place, fmt::format("more than {} runs", most_runs));
             experiment_.runs.push_back(std::move(run));
@@ -354,13 +363,15 @@ std::vector<std::uint64_t> powers_of_two(std::uint64_t passes) {
     return result;
 }
 
-int hardware_threads() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
+int hardware_threads() {
+    return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
 
 void require_perfect_square(std::int64_t samples_per_pixel) {
     const auto side = std::llround(std::sqrt(static_cast<double>(samples_per_pixel)));
     if (samples_per_pixel < 1 || side > 1024 || side * side != samples_per_pixel)
-        throw InputError(fmt::format("samples_per_pixel: expected a perfect square from 1 to 1048576, got {}",
-                                     samples_per_pixel));
+        throw InputError(
+            fmt::format("samples_per_pixel: expected a perfect square from 1 to 1048576, got {}", samples_per_pixel));
 }
 
 }  // namespace photonlab

@@ -28,26 +28,26 @@ namespace photonlab {
 
 struct SceneEntry {
     std::filesystem::path file;
-    std::string name;                                    ///< of the scene's folder, or of the file if that is not scene.xml
-    std::optional<std::filesystem::path> reference;      ///< folder of halves, or an EXR; without one no errors are taken
-    std::optional<Resolution> resolution;                ///< in place of the scene file's
+    std::string name;                                ///< of the scene's folder, or of the file if that is not scene.xml
+    std::optional<std::filesystem::path> reference;  ///< folder of halves, or an EXR; without one no errors are taken
+    std::optional<Resolution> resolution;            ///< in place of the scene file's
 };
 
 /// One point of the product.
 struct ExperimentRun {
-    std::string name;          ///< unique and fit for a file: scene, method, what is swept, seed
-    std::size_t scene = 0;     ///< index into Experiment::scenes
-    std::string method;        ///< the name its method was given
+    std::string name;       ///< unique and fit for a file: scene, method, what is swept, seed
+    std::size_t scene = 0;  ///< index into Experiment::scenes
+    std::string method;     ///< the name its method was given
     ChosenSettings settings;
     std::uint64_t seed = 1;
 };
 
 struct Experiment {
     std::filesystem::path file;
-    std::string name;                      ///< of the file, without .toml
+    std::string name;  ///< of the file, without .toml
     std::string title;
     std::vector<SceneEntry> scenes;
-    std::vector<ExperimentRun> runs;       ///< scene by scene
+    std::vector<ExperimentRun> runs;  ///< scene by scene
     std::uint64_t passes = 1;
     std::vector<std::uint64_t> recorded;   ///< increasing; always with 0 and the last pass
     std::vector<std::uint64_t> snapshots;  ///< passes whose image is kept: increasing, always with the last

@@ -26,29 +26,31 @@ std::vector<const ExperimentRun*> select_runs(const Experiment& experiment, cons
         names += "\n  " + run.name;
         if (!only || run.name == *only || fnmatch(only->c_str(), run.name.c_str(), 0) == 0) selected.push_back(&run);
     }
-    if (selected.empty()) throw InputError(fmt::format("--only {}: no run is called that; the runs are{}", *only, names));
+    if (selected.empty())
+        throw InputError(fmt::format("--only {}: no run is called that; the runs are{}", *only, names));
     return selected;
 }
 
 /// Everything that changes what a run records.
-std::string run_key(const Experiment& experiment, const ExperimentRun& run, const RunSettings& settings, const Scene& scene,
-                    const std::string& reference_key) {
-    return hash_text(Json{{"program", program_version().version},
-                          {"experiment", experiment.name},
-                          {"title", experiment.title},
-                          {"run", run.name},
-                          {"settings", settings_json(settings.method)},
-                          {"seed", settings.seed},
-                          {"passes", settings.passes},
-                          {"recorded", experiment.recorded},
-                          {"snapshots", experiment.snapshots},
-                          {"threads", settings.threads},
-                          {"width", scene.camera.width},
-                          {"height", scene.camera.height},
-                          {"samples_per_pixel", experiment.samples_per_pixel},
-                          {"scene", scene.hash},
-                          {"reference", reference_key}}
-                         .dump());
+std::string run_key(const Experiment& experiment, const ExperimentRun& run, const RunSettings& settings,
+                    const Scene& scene, const std::string& reference_key) {
+    return hash_text(Json{
+        {"program", program_version().version},
+        {"experiment", experiment.name},
+        {"title", experiment.title},
+        {"run", run.name},
+        {"settings", settings_json(settings.method)},
+        {"seed", settings.seed},
+        {"passes", settings.passes},
+        {"recorded", experiment.recorded},
+        {"snapshots", experiment.snapshots},
+        {"threads", settings.threads},
+        {"width", scene.camera.width},
+        {"height", scene.camera.height},
+        {"samples_per_pixel", experiment.samples_per_pixel},
+        {"scene", scene.hash},
+        {"reference",
+         reference_key}}.dump());
 }
 
 /// True when the folder holds a run that finished with this key.
@@ -75,8 +77,14 @@ void execute(const Experiment& experiment, const PreparedRun& prepared, const Sc
              const Reference* reference, const PassListener& on_pass, std::string& summary) {
     const SceneEntry& entry = experiment.scenes[prepared.run->scene];
     const auto began = std::chrono::steady_clock::now();
-    RunRecord record{experiment.title, prepared.run->method, prepared.key, entry.file, std::chrono::system_clock::now(), 0.0,
-                     experiment.recorded, {}};
+    RunRecord record{experiment.title,
+                     prepared.run->method,
+                     prepared.key,
+                     entry.file,
+                     std::chrono::system_clock::now(),
+                     0.0,
+                     experiment.recorded,
+                     {}};
     std::filesystem::remove(prepared.folder / "run.json");
     std::filesystem::remove_all(prepared.folder / "snapshots");
     make_folder(prepared.folder / "snapshots");
@@ -116,7 +124,8 @@ std::size_t merge_records(const Experiment& experiment, const std::filesystem::p
         const std::string rows = read_text_file(folder / "iterations.csv");
         const std::size_t header_end = rows.find('\n');
         if (header_end == std::string::npos || rows.substr(0, header_end) != csv_header())
-            throw InputError((folder / "iterations.csv").string(), "its columns are not those of this program; delete it");
+            throw InputError((folder / "iterations.csv").string(),
+                             "its columns are not those of this program; delete it");
         merged += rows.substr(header_end + 1);
         ++count;
     }
@@ -130,7 +139,7 @@ PreparedExperiment prepare_experiment(const Experiment& experiment, const std::f
                                       const std::optional<std::string>& only) {
     PreparedExperiment prepared;
     prepared.scenes.resize(experiment.scenes.size());
-    std::map<std::pair<std::size_t, int>, std::string> reference_keys;    // by scene and depth
+    std::map<std::pair<std::size_t, int>, std::string> reference_keys;  // by scene and depth
     for (const ExperimentRun* run : select_runs(experiment, only)) {
         const SceneEntry& entry = experiment.scenes[run->scene];
         std::optional<Scene>& scene = prepared.scenes[run->scene];
@@ -148,8 +157,8 @@ PreparedExperiment prepare_experiment(const Experiment& experiment, const std::f
         if (entry.reference) {
             const auto [known, is_new] = reference_keys.try_emplace({run->scene, ready.settings.method.max_depth});
             if (is_new)
-                known->second = check_reference(
-                    *entry.reference, subject_of(*scene, experiment.samples_per_pixel, ready.settings.method.max_depth));
+                known->second = check_reference(*entry.reference, subject_of(*scene, experiment.samples_per_pixel,
+                                                                             ready.settings.method.max_depth));
             reference_key = known->second;
         }
         ready.key = run_key(experiment, *run, ready.settings, *scene, reference_key);
@@ -166,8 +175,8 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
     outcome.records = results / "iterations.csv";
     require_writable(outcome.records);
 
-    const auto to_do = static_cast<std::uint64_t>(
-        std::count_if(prepared.runs.begin(), prepared.runs.end(), [](const PreparedRun& run) { return !run.finished; }));
+    const auto to_do = static_cast<std::uint64_t>(std::count_if(prepared.runs.begin(), prepared.runs.end(),
+                                                                [](const PreparedRun& run) { return !run.finished; }));
     Progress progress(to_do * experiment.passes);
     std::optional<std::size_t> current_scene;
     std::optional<HitPoints> hit_points;
@@ -194,8 +203,9 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
         const std::string counted = fmt::format("run {} of {}: {}", outcome.ran + 1, to_do, ready.run->name);
         progress.show(passes_before, counted);
         std::string summary;
-        execute(experiment, ready, scene, *hit_points, reference ? &*reference : nullptr,
-                [&](std::uint64_t pass) { progress.show(passes_before + pass, counted); }, summary);
+        execute(
+            experiment, ready, scene, *hit_points, reference ? &*reference : nullptr,
+            [&](std::uint64_t pass) { progress.show(passes_before + pass, counted); }, summary);
         passes_before += experiment.passes;
         ++outcome.ran;
         progress.finished(summary);
@@ -215,7 +225,7 @@ std::string list_runs(const Experiment& experiment, const PreparedExperiment& pr
     std::size_t width = 0;
     for (const PreparedRun& ready : prepared.runs) width = std::max(width, ready.run->name.size());
     std::string list = fmt::format("{}\n\n", experiment.title);
-    std::map<std::string, RunEstimate> estimates;    // by scene and settings: seeds do not change them
+    std::map<std::string, RunEstimate> estimates;  // by scene and settings: seeds do not change them
     std::optional<std::size_t> current_scene;
     HitPoints hit_points;
     double seconds = 0.0;
@@ -235,11 +245,12 @@ std::string list_runs(const Experiment& experiment, const PreparedExperiment& pr
         const RunEstimate& estimate = known->second;
         seconds += estimate.seconds;
         mebibytes = std::max(mebibytes, estimate.mebibytes);
-        list += fmt::format("{:<{}}  about {}, {:.0f} MiB\n", ready.run->name, width, describe_duration(estimate.seconds),
-                            estimate.mebibytes);
+        list += fmt::format("{:<{}}  about {}, {:.0f} MiB\n", ready.run->name, width,
+                            describe_duration(estimate.seconds), estimate.mebibytes);
     }
-    list += fmt::format("\n{} runs of {} passes on {} threads: about {} in all, at most {:.0f} MiB\n", prepared.runs.size(),
-                        experiment.passes, experiment.threads, describe_duration(seconds), mebibytes);
+    list +=
+        fmt::format("\n{} runs of {} passes on {} threads: about {} in all, at most {:.0f} MiB\n", prepared.runs.size(),
+                    experiment.passes, experiment.threads, describe_duration(seconds), mebibytes);
     return list;
 }
 

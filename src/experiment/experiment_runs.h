@@ -5,8 +5,8 @@
 //     RESULTS/runs/RUN/snapshots/pass-000064.exr
 //     RESULTS/runs/RUN/run.json                 written last: a folder without it is not finished
 //
-// A finished run is recognised by its key: a hash of its settings, scene, reference and the program's version. One whose
-// key differs from what the experiment asks for now is made again from the start.
+// A finished run is recognised by its key: a hash of its settings, scene, reference and the program's version. One
+// whose key differs from what the experiment asks for now is made again from the start.
 
 #pragma once
 
@@ -27,12 +27,12 @@ struct PreparedRun {
     RunSettings settings;
     std::string key;
     std::filesystem::path folder;
-    bool finished = false;    ///< with this key
+    bool finished = false;  ///< with this key
 };
 
 struct PreparedExperiment {
-    std::vector<std::optional<Scene>> scenes;    ///< by index of Experiment::scenes; only those that a selected run needs
-    std::vector<PreparedRun> runs;               ///< the selected ones
+    std::vector<std::optional<Scene>> scenes;  ///< by index of Experiment::scenes; only those that a selected run needs
+    std::vector<PreparedRun> runs;             ///< the selected ones
 };
 
 /// Loads scenes and checks references for the runs whose name matches `only` (a shell pattern; empty: all). Throws
@@ -42,9 +42,9 @@ PreparedExperiment prepare_experiment(const Experiment& experiment, const std::f
 
 struct ExperimentOutcome {
     std::size_t ran = 0;
-    std::size_t skipped = 0;               ///< were finished already
-    std::filesystem::path records;         ///< the merged iterations.csv
-    std::size_t merged = 0;                ///< runs in it
+    std::size_t skipped = 0;        ///< were finished already
+    std::filesystem::path records;  ///< the merged iterations.csv
+    std::size_t merged = 0;         ///< runs in it
 };
 
 /// Runs what is not finished and merges the records.

@@ -25,7 +25,8 @@ std::filesystem::path temporary_name(const std::filesystem::path& file) {
 
 std::string read_text_file(const std::filesystem::path& file) {
     std::error_code error;
-    if (std::filesystem::is_directory(file, error)) throw InputError(file.string(), "expected a file, this is a folder");
+    if (std::filesystem::is_directory(file, error))
+        throw InputError(file.string(), "expected a file, this is a folder");
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw InputError(file.string(), std::string("cannot be read: ") + std::strerror(errno));
     std::ostringstream text;
@@ -60,7 +61,8 @@ void make_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (!std::filesystem::is_directory(folder))
-        throw InputError(folder.string(), "folder cannot be made: " + (error ? error.message() : "a file has this name"));
+        throw InputError(folder.string(),
+                         "folder cannot be made: " + (error ? error.message() : "a file has this name"));
 }
 
 void require_writable(const std::filesystem::path& file) {

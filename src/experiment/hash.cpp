@@ -14,6 +14,8 @@ std::string hash_text(std::string_view text) {
     return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
-std::string hash_file(const std::filesystem::path& file) { return hash_text(read_text_file(file)); }
+std::string hash_file(const std::filesystem::path& file) {
+    return hash_text(read_text_file(file));
+}
 
 }  // namespace photonlab

@@ -10,10 +10,13 @@
 namespace photonlab {
 
 Progress::Progress(std::uint64_t total)
-    : on_terminal_(::isatty(STDERR_FILENO) == 1), total_(std::max<std::uint64_t>(1, total)),
+    : on_terminal_(::isatty(STDERR_FILENO) == 1),
+      total_(std::max<std::uint64_t>(1, total)),
       began_(std::chrono::steady_clock::now()) {}
 
-Progress::~Progress() { clear(); }
+Progress::~Progress() {
+    clear();
+}
 
 void Progress::show(std::uint64_t done, const std::string& what) {
     const auto now = std::chrono::steady_clock::now();
@@ -26,7 +29,8 @@ void Progress::show(std::uint64_t done, const std::string& what) {
         done > 0 ? describe_duration(elapsed * (1.0 - share) / share) + " left" : "time left not known yet";
     constexpr int width = 24;
     const int filled = static_cast<int>(share * width);
-    fmt::print(stderr, "\r\033[K[{:#<{}}{:.<{}}] {:3.0f}%  {}  {}", "", filled, "", width - filled, 100.0 * share, left, what);
+    fmt::print(stderr, "\r\033[K[{:#<{}}{:.<{}}] {:3.0f}%  {}  {}", "", filled, "", width - filled, 100.0 * share, left,
+               what);
     std::fflush(stderr);
 }
 

@@ -1,5 +1,5 @@
-// Progress of long work on a terminal: a bar with the time left. Not on a terminal it prints nothing of its own; callers
-// then print a plain line for each thing they finish.
+// Progress of long work on a terminal: a bar with the time left. Not on a terminal it prints nothing of its own;
+// callers then print a plain line for each thing they finish.
 
 #pragma once
 

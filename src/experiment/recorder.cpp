@@ -19,7 +19,7 @@ constexpr std::size_t most_listed_pixels = 16;
 
 struct Column {
     std::string_view name;
-    std::string (*value)(const Record&);    ///< nullptr: the setting of this name
+    std::string (*value)(const Record&);  ///< nullptr: the setting of this name
 };
 
 template <typename Number>
@@ -32,9 +32,13 @@ std::string number(const std::optional<Number>& value) {
     return value ? fmt::format("{}", *value) : "";
 }
 
-bool uses(const Record& record, std::string_view field) { return uses_setting(record.identity.settings.method, field); }
+bool uses(const Record& record, std::string_view field) {
+    return uses_setting(record.identity.settings.method, field);
+}
 
-bool has_photons(const Record& record) { return uses(record, "photons_per_pass"); }
+bool has_photons(const Record& record) {
+    return uses(record, "photons_per_pass");
+}
 
 std::string radius_rule(const Record& record) {
     if (!uses(record, "radius")) return "";
@@ -86,7 +90,8 @@ const std::vector<Column>& columns() {
         {"component", [](const Record& r) { return std::string(r.component); }},
         {"paths_emitted", [](const Record& r) { return has_photons(r) ? number(r.state.paths_emitted) : ""; }},
         {"photons_stored", [](const Record& r) { return has_photons(r) ? number(r.state.photons_stored) : ""; }},
-        {"photons_gathered", [](const Record& r) { return has_photons(r) ? number(r.state.report.photons_gathered) : ""; }},
+        {"photons_gathered",
+         [](const Record& r) { return has_photons(r) ? number(r.state.report.photons_gathered) : ""; }},
         {"seconds", [](const Record& r) { return number(r.state.times.total()); }},
         {"cpu_seconds", [](const Record& r) { return number(r.state.times.cpu_total()); }},
         {"seconds_trace", stage_seconds<Stage::Trace>},
@@ -124,8 +129,9 @@ std::string csv_row(const Record& record) {
     std::string line;
     for (const Column& column : columns()) {
         if (&column != &columns().front()) line += ',';
-        line += csv_quoted(column.value ? column.value(record)
-                                        : setting_text(record.identity.settings.method, *find_setting_field(column.name)));
+        line +=
+            csv_quoted(column.value ? column.value(record)
+                                    : setting_text(record.identity.settings.method, *find_setting_field(column.name)));
     }
     return line;
 }
@@ -150,7 +156,9 @@ double peak_resident_mib() {
     return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-void reset_peak_resident() { std::ofstream("/proc/self/clear_refs") << "5"; }
+void reset_peak_resident() {
+    std::ofstream("/proc/self/clear_refs") << "5";
+}
 
 Recorder::Recorder(RunIdentity identity, const Reference* reference, const std::filesystem::path& file)
     : identity_(std::move(identity)), reference_(reference), file_(file) {

@@ -37,8 +37,8 @@ struct Record {
     const RunIdentity& identity;
     const RunState& state;
     std::string_view component;
-    std::optional<ErrorMetrics> errors;    ///< empty without a reference for this component
-    std::optional<std::uint64_t> nonfinite;    ///< pixels of the component with a non-finite channel
+    std::optional<ErrorMetrics> errors;      ///< empty without a reference for this component
+    std::optional<std::uint64_t> nonfinite;  ///< pixels of the component with a non-finite channel
     double peak_rss_mib = 0.0;
 };
 
@@ -65,8 +65,8 @@ bool photons_carry_direct(const MethodSettings& settings);
 /// Highest resident memory of the process since the last reset, MiB.
 double peak_resident_mib();
 
-/// Forgets earlier peaks, so that a run is not charged for the one before it. Where the system cannot do that, peaks stay
-/// those of the whole process.
+/// Forgets earlier peaks, so that a run is not charged for the one before it. Where the system cannot do that, peaks
+/// stay those of the whole process.
 void reset_peak_resident();
 
 /// Writes a run's rows as its passes finish.
@@ -79,7 +79,7 @@ public:
     void record(const RunState& state, const Image& image);
 
     const RunIdentity& identity() const { return identity_; }
-    std::uint64_t nonfinite_pixels() const { return nonfinite_count_; }    ///< summed over the rows of component total
+    std::uint64_t nonfinite_pixels() const { return nonfinite_count_; }  ///< summed over the rows of component total
     const std::vector<NonfinitePixel>& first_nonfinite_pixels() const { return first_nonfinite_; }
     const std::optional<ErrorMetrics>& last_total_errors() const { return last_total_; }
 

@@ -12,12 +12,15 @@ namespace photonlab {
 
 namespace {
 
-std::string size_text(int width, int height) { return fmt::format("{}x{}", width, height); }
+std::string size_text(int width, int height) {
+    return fmt::format("{}x{}", width, height);
+}
 
 void require_size(const std::filesystem::path& path, const Image& image, const ReferenceSubject& subject) {
     if (image.width != subject.width || image.height != subject.height)
-        throw InputError(path.string(), fmt::format("this reference is {}, the image {}", size_text(image.width, image.height),
-                                                    size_text(subject.width, subject.height)));
+        throw InputError(path.string(),
+                         fmt::format("this reference is {}, the image {}", size_text(image.width, image.height),
+                                     size_text(subject.width, subject.height)));
 }
 
 ReferenceSubject subject_of(const Json& json) {

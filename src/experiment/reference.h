@@ -1,6 +1,6 @@
-// A reference to judge by: two independent halves in a folder (reference_store.h makes them), or a single EXR of another
-// renderer. Its sample positions, resolution and depth are part of what it is a reference of, so they must be those of
-// the image; a folder of halves knows its own and refuses others.
+// A reference to judge by: two independent halves in a folder (reference_store.h makes them), or a single EXR of
+// another renderer. Its sample positions, resolution and depth are part of what it is a reference of, so they must be
+// those of the image; a folder of halves knows its own and refuses others.
 
 #pragma once
 
@@ -33,10 +33,10 @@ std::string reference_key(const ReferenceSubject& subject);
 
 struct Reference {
     std::filesystem::path path;
-    std::string key;                    ///< of a folder: reference_key() and the samples in it; of an EXR: the file's hash
-    std::optional<double> floor_mse;    ///< of the whole image; empty for an EXR
+    std::string key;  ///< of a folder: reference_key() and the samples in it; of an EXR: the file's hash
+    std::optional<double> floor_mse;  ///< of the whole image; empty for an EXR
     Image half_a;
-    Image half_b;                       ///< no layers: half_a is the whole reference
+    Image half_b;  ///< no layers: half_a is the whole reference
 };
 
 /// The components that errors are taken of, in the order of the records.

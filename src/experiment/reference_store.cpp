@@ -32,8 +32,8 @@ std::uint64_t read_number(const std::filesystem::path& file, const Metadata& met
     std::uint64_t number = 0;
     const auto result = std::from_chars(text.data(), text.data() + text.size(), number);
     if (text.empty() || result.ec != std::errc() || result.ptr != text.data() + text.size())
-        throw InputError(file.string(), fmt::format("this is no half of a reference: its attribute {} is not a number",
-                                                    attribute));
+        throw InputError(file.string(),
+                         fmt::format("this is no half of a reference: its attribute {} is not a number", attribute));
     return number;
 }
 
@@ -47,9 +47,10 @@ public:
         Metadata metadata;
         stored_ = read_exr(file_, &metadata);
         if (metadata[std::string(key_attribute)] != key_)
-            throw InputError(file_.string(),
-                             "this is a half of another reference: its scene, resolution, samples per pixel or depth differ; "
-                             "choose another folder");
+            throw InputError(
+                file_.string(),
+                "this is a half of another reference: its scene, resolution, samples per pixel or depth differ; "
+                "choose another folder");
         const std::uint64_t stored_seed = read_number(file_, metadata, seed_attribute);
         if (stored_seed != seed_)
             throw InputError(file_.string(), fmt::format("was made with seed {}; it cannot be continued with seed {}",
@@ -186,7 +187,8 @@ Json add_reference_samples(const Scene& scene, const ReferenceSettings& settings
 Json read_reference_json(const std::filesystem::path& folder) {
     const std::filesystem::path file = folder / "reference.json";
     if (!std::filesystem::exists(file))
-        throw InputError(folder.string(), "this is no reference: reference.json is missing (photonlab reference makes one)");
+        throw InputError(folder.string(),
+                         "this is no reference: reference.json is missing (photonlab reference makes one)");
     Json json;
     try {
         json = Json::parse(read_text_file(file));
@@ -206,9 +208,10 @@ Json read_reference_json(const std::filesystem::path& folder) {
 Image read_reference_half(const std::filesystem::path& folder, const Json& json, std::string_view half) {
     const std::filesystem::path file = half_file(folder, half);
     if (hash_file(file) != json.at("checksums").at(std::string(half)).get<std::string>())
-        throw InputError(file.string(),
-                         "is not the file that reference.json was written for: it was changed, or a save was interrupted "
-                         "(photonlab reference with the same folder repairs the latter)");
+        throw InputError(
+            file.string(),
+            "is not the file that reference.json was written for: it was changed, or a save was interrupted "
+            "(photonlab reference with the same folder repairs the latter)");
     Image image = read_exr(file);
     if (image.width != json.at("width").get<int>() || image.height != json.at("height").get<int>())
         throw InputError(file.string(), "is not of the size that reference.json gives");

@@ -4,9 +4,9 @@
 //     half_a.exr, half_b.exr    mean over the half's samples, as layers; how many and of what is in their metadata
 //     reference.json            how it was made, its key, its noise floor, and the halves' checksums
 //
-// Each half is replaced whole and knows its own number of samples, so an interruption between the two loses nothing: the
-// next call brings the lagging half up first. reference.json is written last; where its checksums are not the halves',
-// nothing is judged by them until then.
+// Each half is replaced whole and knows its own number of samples, so an interruption between the two loses nothing:
+// the next call brings the lagging half up first. reference.json is written last; where its checksums are not the
+// halves', nothing is judged by them until then.
 
 #pragma once
 
@@ -26,10 +26,10 @@ namespace photonlab {
 
 struct ReferenceSettings {
     std::filesystem::path scene_file;
-    std::uint64_t samples = 1024;         ///< to add, a sample position and half
-    int samples_per_pixel = 1;            ///< sample positions, a perfect square
+    std::uint64_t samples = 1024;  ///< to add, a sample position and half
+    int samples_per_pixel = 1;     ///< sample positions, a perfect square
     int max_depth = -1;
-    std::uint64_t seed = 1;               ///< must be the one that is there already, when adding
+    std::uint64_t seed = 1;  ///< must be the one that is there already, when adding
     int threads = 1;
     double seconds_between_saves = 30.0;
 };
@@ -37,10 +37,11 @@ struct ReferenceSettings {
 /// Called after every sample of a half: how many of how many are done.
 using SampleListener = std::function<void(std::uint64_t done, std::uint64_t total)>;
 
-/// Adds samples to what is in `folder`. Throws InputError when that is a reference of something else, or of another seed.
-/// Returns what reference.json now says.
-Json add_reference_samples(const Scene& scene, const ReferenceSettings& settings, const std::filesystem::path& folder,
-                           const SampleListener& on_sample = [](std::uint64_t, std::uint64_t) {});
+/// Adds samples to what is in `folder`. Throws InputError when that is a reference of something else, or of another
+/// seed. Returns what reference.json now says.
+Json add_reference_samples(
+    const Scene& scene, const ReferenceSettings& settings, const std::filesystem::path& folder,
+    const SampleListener& on_sample = [](std::uint64_t, std::uint64_t) {});
 
 /// Reads reference.json; InputError when it is missing or not one.
 Json read_reference_json(const std::filesystem::path& folder);

@@ -34,7 +34,8 @@ RunEstimate estimate_run(const Scene& scene, const HitPoints& hit_points, const 
     double scale = 1.0;
     if (uses_setting(settings.method, "photons_per_pass")) {
         probe.method.photons_per_pass = std::min(probe_photons, settings.method.photons_per_pass);
-        scale = static_cast<double>(settings.method.photons_per_pass) / static_cast<double>(probe.method.photons_per_pass);
+        scale =
+            static_cast<double>(settings.method.photons_per_pass) / static_cast<double>(probe.method.photons_per_pass);
     }
     probe.passes = probe_passes;
     probe.estimated = {1, 2};
@@ -57,7 +58,8 @@ RunEstimate estimate_run(const Scene& scene, const HitPoints& hit_points, const 
     const double photons_of_pass =
         static_cast<double>(passes.photons_stored) / static_cast<double>(probe_passes) * scale * sizeof(Photon);
     const double map_growth = std::max(0.0, map(1) - map(0));
-    const double map_bytes = map_growth > 0.1 * map(0) ? map(0) + map_growth * static_cast<double>(settings.passes - 1) : map(0);
+    const double map_bytes =
+        map_growth > 0.1 * map(0) ? map(0) + map_growth * static_cast<double>(settings.passes - 1) : map(0);
     estimate.mebibytes = resident_mebibytes() + (map_bytes + photons_of_pass) / mebibyte;
     return estimate;
 }

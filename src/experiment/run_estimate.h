@@ -1,9 +1,9 @@
 // How long a run will take and how much memory, before it is started: three small passes are measured and scaled.
 //
-// The model is linear. Tracing, building and gathering take time in proportion to the photons of a pass; direct light does
-// not know them. An estimate at pass i costs what it did at pass 1, plus (i - 1) times what it grew by from pass 1 to
-// pass 2: nothing for ppm, much for photonmapper, which gathers all photons so far. Radii that shrink make ppm cheaper
-// than this says.
+// The model is linear. Tracing, building and gathering take time in proportion to the photons of a pass; direct light
+// does not know them. An estimate at pass i costs what it did at pass 1, plus (i - 1) times what it grew by from pass 1
+// to pass 2: nothing for ppm, much for photonmapper, which gathers all photons so far. Radii that shrink make ppm
+// cheaper than this says.
 
 #pragma once
 
@@ -14,8 +14,8 @@
 namespace photonlab {
 
 struct RunEstimate {
-    double seconds = 0.0;     ///< of passes and estimates; metrics and files not included
-    double mebibytes = 0.0;   ///< of the process at its largest
+    double seconds = 0.0;    ///< of passes and estimates; metrics and files not included
+    double mebibytes = 0.0;  ///< of the process at its largest
 };
 
 RunEstimate estimate_run(const Scene& scene, const HitPoints& hit_points, const RunSettings& settings);

@@ -23,7 +23,9 @@ std::string utc(std::chrono::system_clock::time_point time) {
     return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(time)));
 }
 
-Json optional_json(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+Json optional_json(const std::optional<double>& value) {
+    return value ? Json(*value) : Json();
+}
 
 }  // namespace
 
@@ -35,7 +37,8 @@ Json run_json(const RunRecord& record, const Recorder& recorder, const RunState&
 
     Json nonfinite_pixels = Json::array();
     for (const NonfinitePixel& pixel : recorder.first_nonfinite_pixels())
-        nonfinite_pixels.push_back({{"pass", pixel.pass}, {"component", pixel.component}, {"x", pixel.x}, {"y", pixel.y}});
+        nonfinite_pixels.push_back(
+            {{"pass", pixel.pass}, {"component", pixel.component}, {"x", pixel.x}, {"y", pixel.y}});
     Json snapshots = Json::array();
     for (const Snapshot& snapshot : record.snapshots)
         snapshots.push_back({{"pass", snapshot.pass}, {"file", snapshot.file}});
@@ -120,6 +123,8 @@ Metadata image_metadata(const RunIdentity& identity, const RunState& state, cons
     return metadata;
 }
 
-std::string snapshot_name(std::uint64_t pass) { return fmt::format("pass-{:06}.exr", pass); }
+std::string snapshot_name(std::uint64_t pass) {
+    return fmt::format("pass-{:06}.exr", pass);
+}
 
 }  // namespace photonlab

@@ -19,17 +19,17 @@ namespace photonlab {
 /// An image that a run kept.
 struct Snapshot {
     std::uint64_t pass = 0;
-    std::string file;    ///< relative to the run's folder
+    std::string file;  ///< relative to the run's folder
 };
 
 /// What a run says of itself beside its rows.
 struct RunRecord {
-    std::string title;                                      ///< of the experiment
+    std::string title;  ///< of the experiment
     std::string method;
-    std::string key;                                        ///< by which a finished run is recognised
+    std::string key;  ///< by which a finished run is recognised
     std::filesystem::path scene_file;
     std::chrono::system_clock::time_point started;
-    double seconds = 0.0;                                   ///< from start to end, hit points, metrics and files included
+    double seconds = 0.0;  ///< from start to end, hit points, metrics and files included
     std::vector<std::uint64_t> recorded;
     std::vector<Snapshot> snapshots;
 };

@@ -23,9 +23,13 @@ double process_cpu_seconds() {
 
 }  // namespace
 
-double StageTimes::total() const { return std::accumulate(seconds.begin(), seconds.end(), 0.0); }
+double StageTimes::total() const {
+    return std::accumulate(seconds.begin(), seconds.end(), 0.0);
+}
 
-double StageTimes::cpu_total() const { return std::accumulate(cpu_seconds.begin(), cpu_seconds.end(), 0.0); }
+double StageTimes::cpu_total() const {
+    return std::accumulate(cpu_seconds.begin(), cpu_seconds.end(), 0.0);
+}
 
 StageTimes& StageTimes::operator+=(const StageTimes& other) {
     for (std::size_t stage = 0; stage < stage_count; ++stage) {

@@ -12,15 +12,24 @@ namespace photonlab {
 
 namespace {
 
-Json write_value(const std::string& value) { return value; }
-Json write_value(double value) { return value; }
-Json write_value(int value) { return value; }
-Json write_value(std::uint64_t value) { return value; }
-Json write_value(const std::optional<double>& value) { return value ? Json(*value) : Json("auto"); }
+Json write_value(const std::string& value) {
+    return value;
+}
+Json write_value(double value) {
+    return value;
+}
+Json write_value(int value) {
+    return value;
+}
+Json write_value(std::uint64_t value) {
+    return value;
+}
+Json write_value(const std::optional<double>& value) {
+    return value ? Json(*value) : Json("auto");
+}
 
 template <typename Enumeration>
-    requires std::is_enum_v<Enumeration>
-Json write_value(Enumeration value) {
+requires std::is_enum_v<Enumeration> Json write_value(Enumeration value) {
     return name_of(value);
 }
 
@@ -35,9 +44,12 @@ void read_value(std::string_view name, std::string& target, const SettingValue& 
 }
 
 void read_value(std::string_view name, double& target, const SettingValue& value) {
-    if (const auto* number = std::get_if<double>(&value)) target = *number;
-    else if (const auto* integer = std::get_if<std::int64_t>(&value)) target = static_cast<double>(*integer);
-    else refuse(name, "a number", value);
+    if (const auto* number = std::get_if<double>(&value))
+        target = *number;
+    else if (const auto* integer = std::get_if<std::int64_t>(&value))
+        target = static_cast<double>(*integer);
+    else
+        refuse(name, "a number", value);
 }
 
 void read_value(std::string_view name, std::optional<double>& target, const SettingValue& value) {
@@ -74,7 +86,7 @@ void read_value(std::string_view name, std::uint64_t& target, const SettingValue
 }
 
 template <typename Enumeration>
-    requires std::is_enum_v<Enumeration>
+requires std::is_enum_v<Enumeration>
 void read_value(std::string_view name, Enumeration& target, const SettingValue& value) {
     const auto* text = std::get_if<std::string>(&value);
     if (!text) refuse(name, "one of " + all_names<Enumeration>(), value);
@@ -100,16 +112,16 @@ const std::vector<SettingField>& setting_fields() {
         field<&Settings::alpha>("alpha", "--alpha", "ppm: share of photons kept a pass, in (0, 1]"),
         field<&Settings::k>("k", "--k", "photonmapper, mode nearest: photons searched, at least 2"),
         field<&Settings::radius>("radius", "--radius",
-                                           "initial (ppm) or fixed (photonmapper) gather radius in scene units, or auto: "
-                                           "three times the pixel's footprint"),
+                                 "initial (ppm) or fixed (photonmapper) gather radius in scene units, or auto: "
+                                 "three times the pixel's footprint"),
         field<&Settings::max_radius>("max_radius", "--max-radius",
-                                                   "photonmapper, mode nearest: largest radius in scene units, or auto: "
-                                                   "5% of the scene's bounding radius"),
+                                     "photonmapper, mode nearest: largest radius in scene units, or auto: "
+                                     "5% of the scene's bounding radius"),
         field<&Settings::kernel>("kernel", "--kernel", "ppm, photonmapper: disc, cone, epanechnikov or biweight"),
         field<&Settings::direct>("direct", "--direct", "direct light from shadow rays (sampled) or from photons"),
         field<&Settings::direct_samples>("direct_samples", "--direct-samples", "shadow rays a hit point and pass"),
         field<&Settings::max_depth>("max_depth", "--max-depth",
-                                                 "edges from camera to light, -1 is unlimited [the scene file's]"),
+                                    "edges from camera to light, -1 is unlimited [the scene file's]"),
         field<&Settings::photons_per_pass>("photons_per_pass", "--photons", "paths emitted a pass"),
     };
     return fields;
@@ -167,8 +179,8 @@ void require_used(const ChosenSettings& settings, const SettingField& field) {
     std::string used;
     for (const SettingField& other : setting_fields())
         if (uses_setting(settings.values, other.name)) used += (used.empty() ? "" : ", ") + std::string(other.name);
-    throw InputError(fmt::format("{} is not used by integrator \"{}\" with its other settings; used here: {}", field.name,
-                                 settings.values.integrator, used));
+    throw InputError(fmt::format("{} is not used by integrator \"{}\" with its other settings; used here: {}",
+                                 field.name, settings.values.integrator, used));
 }
 
 MethodSettings resolve(const ChosenSettings& settings, int scene_max_depth) {

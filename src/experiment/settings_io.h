@@ -23,9 +23,9 @@ using SettingValue = std::variant<bool, std::int64_t, double, std::string>;
 
 /// One field of MethodSettings.
 struct SettingField {
-    std::string_view name;      ///< in experiment files and records
-    std::string_view option;    ///< on the command line
-    std::string_view meaning;   ///< one line of help, with range and unit
+    std::string_view name;     ///< in experiment files and records
+    std::string_view option;   ///< on the command line
+    std::string_view meaning;  ///< one line of help, with range and unit
     Json (*write)(const MethodSettings&);
     /// Sets the field called `name`; throws InputError when the value is of another type.
     void (*read)(std::string_view name, MethodSettings&, const SettingValue&);

@@ -34,8 +34,8 @@ constexpr std::int64_t largest_compression_ratio = 100'000;
 
 // Names to which OpenEXR gives a meaning even where they are strings.
 bool is_reserved(const Imf::Header& header, const std::string& name) {
-    static const std::set<std::string> reserved = {"chunkCount", "maxSamplesPerPixel", "name", "tiles",
-                                                   "type",       "version",            "view"};
+    static const std::set<std::string> reserved = {
+        "chunkCount", "maxSamplesPerPixel", "name", "tiles", "type", "version", "view"};
     return header.find(name) != header.end() || reserved.count(name) != 0 || name == layers_attribute;
 }
 
@@ -180,7 +180,7 @@ void write_exr(const std::filesystem::path& file, const Image& image, const Meta
     for (const Layer& layer : image.layers) {
         assert(layer.pixels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
         assert(!layer.name.empty() && layer.name.find_first_of(",.") == std::string::npos);
-        static_cast<void>(layer);    // for builds without assertions
+        static_cast<void>(layer);  // for builds without assertions
     }
 
     std::string bytes;

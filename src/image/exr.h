@@ -16,7 +16,7 @@
 
 namespace photonlab {
 
-using Metadata = std::map<std::string, std::string>;    ///< attribute name to value
+using Metadata = std::map<std::string, std::string>;  ///< attribute name to value
 
 /// Writes to a temporary name beside `file` and renames, so that a half-written file never has the final name.
 /// `image` has at least one layer; one layer called "total" is written as R, G, B alone. Values that are not finite

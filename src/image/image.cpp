@@ -11,7 +11,8 @@ const std::vector<Color>* Image::find(std::string_view name) const {
 }
 
 std::vector<ColorD> total(const Image& image) {
-    std::vector<ColorD> sum(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height), ColorD(0.0));
+    std::vector<ColorD> sum(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height),
+                            ColorD(0.0));
     for (const Layer& layer : image.layers) {
         assert(layer.pixels.size() == sum.size());
         for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += ColorD(layer.pixels[i]);

@@ -12,7 +12,7 @@ namespace photonlab {
 
 struct Layer {
     std::string name;
-    std::vector<Color> pixels;    ///< row by row from the top: pixels[y * width + x]
+    std::vector<Color> pixels;  ///< row by row from the top: pixels[y * width + x]
 };
 
 struct Image {

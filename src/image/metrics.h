@@ -10,7 +10,8 @@
 //   smape          mean |x-r| / (|x| + |r| + 1e-6)
 //   bias           mean (x-r), signed
 //   max_error      largest |x-r|
-// A non-finite x is counted in `nonfinite`, and its pixel left out of the other sums.
+// A non-finite x is counted in `nonfinite`, and its pixel left out of the other sums; where no pixel is left, these are
+// NaN, not 0. A reference that is not finite judges nothing: InputError.
 
 #pragma once
 
@@ -28,24 +29,25 @@ inline constexpr double smape_epsilon = 1e-6;
 /// A reference's pixels: the mean, and the halves when it has two.
 struct ReferencePixels {
     std::vector<ColorD> mean;
-    std::vector<ColorD> half_a;    ///< empty: a single image without a known floor
+    std::vector<ColorD> half_a;  ///< empty: a single image without a known floor
     std::vector<ColorD> half_b;
 };
 
 struct ErrorMetrics {
     double mse = 0.0;
-    std::optional<double> mse_unbiased;    ///< with halves only
+    std::optional<double> mse_unbiased;  ///< with halves only
     double rmse = 0.0;
     double relmse = 0.0;
     double smape = 0.0;
     double bias = 0.0;
     double max_error = 0.0;
-    std::optional<double> reference_floor;    ///< with halves only
-    std::uint64_t nonfinite = 0;              ///< pixels with a non-finite channel
-    std::optional<std::size_t> first_nonfinite;    ///< index of the first such pixel
+    std::optional<double> reference_floor;       ///< with halves only
+    std::uint64_t nonfinite = 0;                 ///< pixels with a non-finite channel
+    std::optional<std::size_t> first_nonfinite;  ///< index of the first such pixel
 };
 
-/// Sizes must agree (asserted; files are checked where they are read).
+/// Sizes must agree (asserted; files are checked where they are read). Throws InputError when the reference holds a
+/// value that is not finite.
 ErrorMetrics compare(const std::vector<ColorD>& image, const ReferencePixels& reference);
 
 }  // namespace photonlab

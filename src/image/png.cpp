@@ -10,7 +10,7 @@
 namespace photonlab {
 
 std::uint8_t srgb_byte(double linear) {
-    if (!(linear > 0.0)) return 0;    // NaN, too
+    if (!(linear > 0.0)) return 0;  // NaN, too
     if (linear >= 1.0) return 255;
     const double encoded = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
     return static_cast<std::uint8_t>(std::lround(255.0 * encoded));
@@ -37,8 +37,8 @@ void write_png(const std::filesystem::path& file, int width, int height, const s
     spec.attribute("oiio:ColorSpace", "sRGB");
 
     TemporaryFile temporary(file);
-    if (!output->open(temporary.path().string(), spec) ||
-        !output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) || !output->close())
+    if (!output->open(temporary.path().string(), spec) || !output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) ||
+        !output->close())
         throw InputError(file.string(), "cannot be written: " + output->geterror());
     temporary.rename();
 }

@@ -50,7 +50,7 @@ inline FluxSum gather_within(const PhotonMap& map, const Scene& scene, const Hit
                              int max_depth) {
     FluxSum sum(scene, point, max_depth);
     const double inverse_squared_radius = 1.0 / (radius * radius);
-    map.within(point.position, point.normal, radius, [&](const Photon& photon, float squared_distance) {
+    map.within(point.position, point.normal, radius, [&](const Photon& photon, double squared_distance) {
         sum.add(photon, kernel_weight(kernel, std::min(1.0, squared_distance * inverse_squared_radius)));
     });
     return sum;

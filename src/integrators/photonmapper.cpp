@@ -81,7 +81,7 @@ private:
         FluxSum sum(context_.scene, point, settings_.max_depth);
         const NearestPhotons nearest =
             map.nearest(point.position, point.normal, static_cast<std::size_t>(settings_.k), max_radius_,
-                        [&](const Photon& photon, float squared_distance, double squared_radius) {
+                        [&](const Photon& photon, double squared_distance, double squared_radius) {
                             sum.add(photon, kernel_weight(settings_.kernel, std::min(1.0, squared_distance / squared_radius)));
                         });
         radius = std::sqrt(nearest.squared_radius);

@@ -1,0 +1,64 @@
+// photonlab compare: every error metric of an image against a reference.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "app/commands.h"
+#include "core/error.h"
+#include "experiment/reference.h"
+#include "image/exr.h"
+
+namespace photonlab {
+
+namespace {
+
+struct CompareOptions {
+    std::filesystem::path image;
+    std::filesystem::path reference;
+    std::string component{total_component};
+};
+
+void print(std::string_view name, const std::optional<double>& value) {
+    fmt::print("{:<16} {}\n", name, value ? fmt::format("{}", *value) : "not known: the reference has no halves");
+}
+
+void compare_files(const CompareOptions& options) {
+    Metadata metadata;
+    const Image image = read_exr(options.image, &metadata);
+    const Reference reference = load_reference(options.reference, std::nullopt);
+    if (image.width != reference.half_a.width || image.height != reference.half_a.height)
+        throw InputError(options.image.string(),
+                         fmt::format("the image is {}x{}, the reference {}x{}", image.width, image.height,
+                                     reference.half_a.width, reference.half_a.height));
+    const bool carried = metadata["photonlab.direct"] == name_of(DirectMode::Photons);
+    const auto errors = judge(image, reference, options.component, carried);
+    if (!errors)
+        throw InputError(
+            fmt::format("--component {}: the image or the reference does not have it to compare", options.component));
+    print("mse", errors->mse);
+    print("mse_unbiased", errors->mse_unbiased);
+    print("rmse", errors->rmse);
+    print("relmse", errors->relmse);
+    print("smape", errors->smape);
+    print("bias", errors->bias);
+    print("max_error", errors->max_error);
+    print("reference_floor", errors->reference_floor);
+    fmt::print("{:<16} {}\n", "nonfinite", errors->nonfinite);
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& app) {
+    auto options = std::make_shared<CompareOptions>();
+    CLI::App* command = app.add_subcommand("compare", "Print every error metric of an image against a reference");
+    command->add_option("IMAGE", options->image, "image to judge (OpenEXR)")->required();
+    command->add_option("REFERENCE", options->reference, "folder of a reference, or an EXR")->required();
+    command->add_option("--component", options->component, "total, or a layer: emission, direct, gathered [total]")
+        ->check(CLI::IsMember(components));
+    command->footer("Example:\n  photonlab compare box.exr reference/cornell-box");
+    command->callback([options] { compare_files(*options); });
+}
+
+}  // namespace photonlab

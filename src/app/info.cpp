@@ -1,0 +1,114 @@
+// photonlab info: what a scene holds and requires.
+
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <type_traits>
+
+#include "app/commands.h"
+#include "app/options.h"
+#include "experiment/experiment_file.h"
+#include "scene/loader.h"
+#include "transport/hit_points.h"
+
+namespace photonlab {
+
+namespace {
+
+struct InfoOptions {
+    std::filesystem::path scene;
+    std::string resolution;
+};
+
+/// One name a kind of material, in the order of the variant.
+template <typename B>
+std::string_view bsdf_name() {
+    if constexpr (std::is_same_v<B, Diffuse>) return "diffuse";
+    return "other";
+}
+
+void print_shapes(const Scene& scene) {
+    std::size_t meshes = 0;
+    std::size_t triangles = 0;
+    std::size_t spheres = 0;
+    std::size_t disks = 0;
+    for (const Shape& shape : scene.shapes) {
+        if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
+            ++meshes;
+            triangles += mesh->triangles.size();
+        }
+        spheres += std::holds_alternative<Sphere>(shape.geometry);
+        disks += std::holds_alternative<Disk>(shape.geometry);
+    }
+    fmt::print("shapes      {}: {} meshes of {} triangles in all, {} spheres, {} disks\n", scene.shapes.size(), meshes,
+               triangles, spheres, disks);
+}
+
+void print_materials(const Scene& scene) {
+    std::map<std::string, std::size_t> kinds;
+    for (const Material& material : scene.materials) {
+        const std::string kind(std::visit([]<typename B>(const B&) { return bsdf_name<B>(); }, material.bsdf));
+        ++kinds[kind + (material.two_sided ? ", two-sided" : "")];
+    }
+    fmt::print("materials   {}\n", scene.materials.size());
+    for (const auto& [kind, count] : kinds) fmt::print("            {} {}\n", count, kind);
+}
+
+void print_emitters(const Scene& scene) {
+    fmt::print("emitters    {}\n", scene.emitters.size());
+    const double area_unit = scene.unit_length * scene.unit_length;
+    for (const Emitter& emitter : scene.emitters) {
+        const ColorD power = emitter.power * area_unit;
+        fmt::print("            {} light, power {:.6g} {:.6g} {:.6g}, chosen with probability {:.4g}\n",
+                   std::holds_alternative<AreaLight>(emitter.kind) ? "area" : "point", power.x, power.y, power.z,
+                   emitter.choice_probability);
+    }
+}
+
+void info(const InfoOptions& options) {
+    std::optional<Resolution> resolution;
+    if (!options.resolution.empty()) resolution = parse_resolution(options.resolution);
+    const Scene scene = build_scene(load_scene_file(options.scene), resolution);
+    const Camera& camera = scene.camera;
+    const VectorD position = VectorD(camera.position) * scene.unit_length + scene.centre;
+
+    fmt::print("scene       {}\n", scene.name);
+    fmt::print("hash        {}\n", scene.hash);
+    print_shapes(scene);
+    print_materials(scene);
+    print_emitters(scene);
+    fmt::print("camera      at {:.6g} {:.6g} {:.6g}, {}x{} pixels, {:.4g} degrees wide\n", position.x, position.y,
+               position.z, camera.width, camera.height, 2.0 * std::atan(camera.right.length() / 2.0) * 180.0 / pi);
+    fmt::print("max depth   {}\n", scene.max_depth < 0 ? "unlimited" : std::to_string(scene.max_depth));
+    fmt::print("size        bounding radius {:.6g}, around {:.6g} {:.6g} {:.6g} (scene units)\n",
+               scene.bounding_radius * scene.unit_length, scene.centre.x, scene.centre.y, scene.centre.z);
+
+    const HitPoints hit_points = trace_hit_points(scene, 1, hardware_threads());
+    const std::size_t count = hit_points.points.size();
+    fmt::print("hit points  {} at one sample a pixel\n", count);
+    if (count > 0) {
+        const double sum = std::accumulate(hit_points.footprints.begin(), hit_points.footprints.end(), 0.0);
+        fmt::print("auto radius {:.6g} in the mean (scene units)\n",
+                   3.0 * sum / static_cast<double>(count) * scene.unit_length);
+    }
+    for (const std::string& note : scene.notes) fmt::print("note        {}\n", note);
+    if (scene.emitters.empty()) fmt::print("warning     there is no light: every image of this scene is black\n");
+    if (count == 0) fmt::print("warning     the camera sees no surface to gather at\n");
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app) {
+    auto options = std::make_shared<InfoOptions>();
+    CLI::App* command = app.add_subcommand("info", "Say what a scene holds and requires");
+    command->add_option("SCENE", options->scene, "scene file (Mitsuba XML)")->required();
+    command->add_option("--resolution", options->resolution, "WIDTHxHEIGHT in place of the scene file's");
+    command->footer("Example:\n  photonlab info scenes/cornell-box/scene.xml");
+    command->callback([options] { info(*options); });
+}
+
+}  // namespace photonlab

@@ -1,0 +1,71 @@
+// photonlab reference: adds path traced samples to the two halves of a reference.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "app/commands.h"
+#include "app/options.h"
+#include "experiment/experiment_file.h"
+#include "experiment/progress.h"
+#include "experiment/reference_store.h"
+#include "scene/loader.h"
+
+namespace photonlab {
+
+namespace {
+
+struct ReferenceOptions {
+    ReferenceSettings settings;
+    std::filesystem::path output;
+    std::string resolution;
+    std::optional<int> max_depth;
+};
+
+void make_reference(ReferenceOptions options) {
+    std::optional<Resolution> resolution;
+    if (!options.resolution.empty()) resolution = parse_resolution(options.resolution);
+    const Scene scene = build_scene(load_scene_file(options.settings.scene_file), resolution);
+    options.settings.max_depth = options.max_depth.value_or(scene.max_depth);
+
+    Progress progress(2 * options.settings.samples);
+    const Json json =
+        add_reference_samples(scene, options.settings, options.output, [&](std::uint64_t done, std::uint64_t total) {
+            progress.show(done, fmt::format("sample {} of {}, both halves; saved about every {:.0f} s", done, total,
+                                            options.settings.seconds_between_saves));
+        });
+    progress.clear();
+    fmt::print("{}: {} samples a half and sample position, {}x{}, {} so far\n", options.output.string(),
+               json.at("samples_per_half").get<std::uint64_t>(), json.at("width").get<int>(),
+               json.at("height").get<int>(), describe_duration(json.at("seconds").get<double>()));
+    for (const auto& [component, floor] : json.at("floor_mse").items())
+        if (floor.is_number()) fmt::print("noise floor (MSE) of {:<9} {:.6g}\n", component, floor.get<double>());
+    fmt::print("wrote {}\n", (options.output / "reference.json").string());
+}
+
+}  // namespace
+
+void add_reference_command(CLI::App& app) {
+    auto options = std::make_shared<ReferenceOptions>();
+    ReferenceSettings& settings = options->settings;
+    settings.threads = hardware_threads();
+    CLI::App* command = app.add_subcommand("reference", "Add path traced samples to a reference of two halves");
+    command->add_option("SCENE", settings.scene_file, "scene file (Mitsuba XML)")->required();
+    command->add_option("-o", options->output, "folder of the reference")->required();
+    command->add_option("--samples", settings.samples, "paths to add, a sample position and half [1024]")
+        ->check(CLI::Range(1u, 0x7fffffffu));
+    command->add_option("--resolution", options->resolution, "WIDTHxHEIGHT in place of the scene file's");
+    command->add_option("--samples-per-pixel", settings.samples_per_pixel, "sample positions, a perfect square [1]");
+    command->add_option("--max-depth", options->max_depth,
+                        "edges from camera to light, -1 is unlimited [the scene file's]");
+    command->add_option("--seed", settings.seed, "of all random numbers [1]");
+    command->add_option("--threads", settings.threads, "threads to use [all]; the image does not depend on it")
+        ->check(CLI::Range(1, 1024));
+    command->footer(
+        "Calling it again adds to what is there. Example:\n  photonlab reference scenes/cornell-box/scene.xml -o "
+        "reference/cornell-box --resolution 128x128 --samples 4096");
+    command->callback([options] { make_reference(*options); });
+}
+
+}  // namespace photonlab

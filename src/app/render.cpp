@@ -1,0 +1,167 @@
+// photonlab render: one scene, one method, one image.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "app/commands.h"
+#include "app/options.h"
+#include "experiment/experiment_file.h"
+#include "experiment/files.h"
+#include "experiment/progress.h"
+#include "experiment/recorder.h"
+#include "experiment/reference.h"
+#include "experiment/run_record.h"
+#include "experiment/runner.h"
+#include "image/exr.h"
+#include "image/png.h"
+#include "scene/loader.h"
+
+namespace photonlab {
+
+namespace {
+
+struct RenderOptions {
+    std::filesystem::path scene;
+    std::filesystem::path output;
+    MethodOptions method;
+    std::uint64_t passes = 32;
+    std::uint64_t seed = 1;
+    int threads = hardware_threads();
+    std::string resolution;
+    int samples_per_pixel = 1;
+    std::string reference;
+    std::string csv;
+    std::string png;
+    std::vector<std::uint64_t> snapshots;
+};
+
+std::filesystem::path snapshot_file(const std::filesystem::path& output, std::uint64_t pass) {
+    return output.parent_path() / fmt::format("{}-pass-{}.exr", output.stem().string(), pass);
+}
+
+void print_summary(const RunState& state, const RunSettings& settings, const Scene& scene, std::size_t hit_points,
+                   const std::optional<ErrorMetrics>& errors) {
+    fmt::print("{}: {} passes of {}, {} hit points, seed {}\n", scene.name, state.pass, settings.method.integrator,
+               hit_points, settings.seed);
+    fmt::print("time        {} (CPU {}): trace {}, build {}, gather {}, direct light {}\n",
+               describe_duration(state.times.total()), describe_duration(state.times.cpu_total()),
+               describe_duration(state.times.of(Stage::Trace)), describe_duration(state.times.of(Stage::Build)),
+               describe_duration(state.times.of(Stage::Gather)), describe_duration(state.times.of(Stage::Direct)));
+    if (state.paths_emitted > 0)
+        fmt::print("photons     {} stored of {} paths, {} gathered\n", state.photons_stored, state.paths_emitted,
+                   state.report.photons_gathered);
+    if (state.report.radius_mean && state.initial_radius)
+        fmt::print("radius      {:.6g} at first, {:.6g} at the end (mean over hit points, scene units)\n",
+                   *state.initial_radius, *state.report.radius_mean);
+    if (state.paths_cut > 0) fmt::print("cut         {} photon paths ended by the cap on edges\n", state.paths_cut);
+    if (errors) {
+        fmt::print("rmse        {:.6g}\n", errors->rmse);
+        if (errors->mse_unbiased)
+            fmt::print("mse         {:.6g}; without the reference's noise {:.6g}\n", errors->mse,
+                       *errors->mse_unbiased);
+    }
+}
+
+void render(const RenderOptions& options) {
+    const ChosenSettings chosen = options.method.settings();
+    require_perfect_square(options.samples_per_pixel);
+    std::vector<std::uint64_t> snapshots = options.snapshots;
+    std::sort(snapshots.begin(), snapshots.end());
+    snapshots.erase(std::unique(snapshots.begin(), snapshots.end()), snapshots.end());
+    if (!snapshots.empty() && snapshots.back() > options.passes)
+        throw InputError(fmt::format("--snapshots: pass {} is beyond the last, {}", snapshots.back(), options.passes));
+    std::optional<Resolution> resolution;
+    if (!options.resolution.empty()) resolution = parse_resolution(options.resolution);
+
+    const Scene scene = build_scene(load_scene_file(options.scene), resolution);
+    RunSettings settings{resolve(chosen, scene.max_depth), options.seed, options.passes, options.threads, {}};
+    std::optional<Reference> reference;
+    if (!options.reference.empty())
+        reference =
+            load_reference(options.reference, ReferenceSubject{scene.hash, scene.camera.width, scene.camera.height,
+                                                               options.samples_per_pixel, settings.method.max_depth});
+
+    // Before hours are spent: everything that is to be written can be.
+    require_writable(options.output);
+    for (const std::string& file : {options.csv, options.png})
+        if (!file.empty()) require_writable(file);
+
+    const std::vector<std::uint64_t> recorded =
+        options.csv.empty() ? std::vector{options.passes} : powers_of_two(options.passes);
+    std::set_union(recorded.begin(), recorded.end(), snapshots.begin(), snapshots.end(),
+                   std::back_inserter(settings.estimated));
+
+    const HitPoints hit_points = trace_hit_points(scene, options.samples_per_pixel, options.threads);
+    const RunIdentity identity{"render",
+                               "render",
+                               scene.name,
+                               settings,
+                               scene.camera.width,
+                               scene.camera.height,
+                               options.samples_per_pixel,
+                               hit_points.points.size()};
+    std::unique_ptr<Recorder> recorder;
+    if (!options.csv.empty())
+        recorder = std::make_unique<Recorder>(identity, reference ? &*reference : nullptr, options.csv);
+
+    Progress progress(options.passes);
+    std::vector<std::filesystem::path> written;
+    std::optional<ErrorMetrics> errors;
+    RunState shown;
+    run_method(
+        scene, hit_points, settings,
+        [&](const RunState& state, const Image& image) {
+            const auto is_in = [&](const std::vector<std::uint64_t>& passes) {
+                return std::binary_search(passes.begin(), passes.end(), state.pass);
+            };
+            if (recorder && is_in(recorded)) recorder->record(state, image);
+            if (is_in(snapshots)) {
+                written.push_back(snapshot_file(options.output, state.pass));
+                write_exr(written.back(), image, image_metadata(identity, state, scene));
+            }
+            if (state.pass != options.passes) return;
+            shown = state;
+            write_exr(options.output, image, image_metadata(identity, state, scene));
+            if (!options.png.empty()) write_png(options.png, image.width, image.height, total(image));
+            if (reference) errors = judge(image, *reference, total_component, photons_carry_direct(settings.method));
+        },
+        [&](std::uint64_t pass) { progress.show(pass, fmt::format("pass {} of {}", pass, options.passes)); });
+    progress.clear();
+
+    print_summary(shown, settings, scene, hit_points.points.size(), errors);
+    fmt::print("wrote       {}\n", options.output.string());
+    for (const std::string& file : {options.png, options.csv})
+        if (!file.empty()) fmt::print("wrote       {}\n", file);
+    for (const std::filesystem::path& file : written) fmt::print("wrote       {}\n", file.string());
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app) {
+    auto options = std::make_shared<RenderOptions>();
+    CLI::App* command = app.add_subcommand("render", "Render one scene with one method");
+    command->add_option("SCENE", options->scene, "scene file (Mitsuba XML)")->required();
+    command->add_option("-o", options->output, "image to write: linear float RGB and layers, OpenEXR")->required();
+    options->method.add_to(*command);
+    command->add_option("--passes", options->passes, "number of passes [32]")->check(CLI::Range(1u, 0xffffffffu));
+    command->add_option("--seed", options->seed, "of all random numbers [1]");
+    command->add_option("--threads", options->threads, "threads to use [all]; the image does not depend on it")
+        ->check(CLI::Range(1, 1024));
+    command->add_option("--resolution", options->resolution, "WIDTHxHEIGHT in place of the scene file's");
+    command->add_option("--samples-per-pixel", options->samples_per_pixel, "sample positions, a perfect square [1]");
+    command->add_option("--reference", options->reference,
+                        "folder of a reference, or an EXR: errors are taken against it");
+    command->add_option("--csv", options->csv, "records to write, at passes 0, 1, 2, 4, ... and the last");
+    command->add_option("--png", options->png, "tone-mapped picture to write");
+    command->add_option("--snapshots", options->snapshots, "passes whose image is kept as OUT-pass-N.exr: 0,1,5,10")
+        ->delimiter(',');
+    command->footer(
+        "Example:\n  photonlab render scenes/cornell-box/scene.xml -o box.exr --integrator ppm --passes 64 "
+        "--alpha 0.7 --png box.png");
+    command->callback([options] { render(*options); });
+}
+
+}  // namespace photonlab

@@ -1,0 +1,56 @@
+// photonlab run: every run of an experiment that is not finished.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "app/commands.h"
+#include "experiment/experiment_file.h"
+#include "experiment/experiment_runs.h"
+
+namespace photonlab {
+
+namespace {
+
+struct RunOptions {
+    std::filesystem::path experiment;
+    std::filesystem::path output;
+    std::string only;
+    bool list = false;
+    bool smoke = false;
+};
+
+void run(const RunOptions& options) {
+    const Experiment experiment =
+        read_experiment(options.experiment, options.smoke ? std::optional(SmokeLimits{}) : std::nullopt);
+    const std::filesystem::path results =
+        options.output.empty() ? std::filesystem::path("results") / experiment.name : options.output;
+    const auto only = options.only.empty() ? std::nullopt : std::optional(options.only);
+    const PreparedExperiment prepared = prepare_experiment(experiment, results, only);
+    if (options.list) {
+        fmt::print("{}", list_runs(experiment, prepared));
+        return;
+    }
+    const ExperimentOutcome outcome = run_experiment(experiment, prepared, results);
+    fmt::print("{} runs made, {} were finished already\n", outcome.ran, outcome.skipped);
+    fmt::print("wrote {}: {} of {} runs\n", outcome.records.string(), outcome.merged, experiment.runs.size());
+    fmt::print("wrote {}: run.json, iterations.csv and snapshots of each\n", (results / "runs").string());
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app) {
+    auto options = std::make_shared<RunOptions>();
+    CLI::App* command = app.add_subcommand("run", "Run an experiment; finished runs are skipped");
+    command->add_option("EXPERIMENT", options->experiment, "experiment file (TOML)")->required();
+    command->add_option("-o", options->output, "folder for results [results/EXPERIMENT]");
+    command->add_flag("--list", options->list, "print the runs with an estimate of time and memory, and run nothing");
+    command->add_option("--only", options->only, "only runs of this name, or that match this shell pattern");
+    command->add_flag("--smoke", options->smoke,
+                      "everything in small: at most 4 passes, 2000 photons a pass, 2 seeds; into a folder of its own");
+    command->footer("Example:\n  photonlab run experiments/demo.toml --only '*_ppm_alpha-0.7_*'");
+    command->callback([options] { run(*options); });
+}
+
+}  // namespace photonlab

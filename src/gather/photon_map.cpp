@@ -1,0 +1,193 @@
+#include "gather/photon_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "core/error.h"
+
+namespace photonlab {
+
+namespace {
+
+constexpr int leaf_max_size = 32;
+
+struct SortKey {
+    std::uint64_t morton;
+    std::uint32_t index;
+};
+
+/// Spreads the low 21 bits of `x` so that two zero bits follow each.
+std::uint64_t spread_bits(std::uint64_t x) {
+    x &= 0x1fffff;
+    x = (x | x << 32) & 0x1f00000000ffff;
+    x = (x | x << 16) & 0x1f0000ff0000ff;
+    x = (x | x << 8) & 0x100f00f00f00f00f;
+    x = (x | x << 4) & 0x10c30c30c30c30c3;
+    x = (x | x << 2) & 0x1249249249249249;
+    return x;
+}
+
+/// Keys along a Morton curve over the photons' bounding box, 21 bits an axis.
+std::vector<SortKey> morton_keys(const std::vector<Photon>& photons) {
+    Vector lower(infinity);
+    Vector upper(-infinity);
+    for (const Photon& photon : photons)
+        for (int axis = 0; axis < 3; ++axis) {
+            lower[axis] = std::min(lower[axis], photon.position[axis]);
+            upper[axis] = std::max(upper[axis], photon.position[axis]);
+        }
+    constexpr double cells = 2097151.0;    // 2^21 - 1
+    std::array<double, 3> scale{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const double extent = static_cast<double>(upper[axis]) - lower[axis];
+        scale[static_cast<std::size_t>(axis)] = extent > 0.0 ? cells / extent : 0.0;
+    }
+    std::vector<SortKey> keys(photons.size());
+    for (std::size_t i = 0; i < photons.size(); ++i) {
+        const Vector& position = photons[i].position;
+        const auto cell = [&](int axis) {
+            const double offset = static_cast<double>(position[axis]) - lower[axis];
+            return static_cast<std::uint64_t>(offset * scale[static_cast<std::size_t>(axis)]);
+        };
+        keys[i] = {spread_bits(cell(0)) | spread_bits(cell(1)) << 1 | spread_bits(cell(2)) << 2,
+                   static_cast<std::uint32_t>(i)};
+    }
+    return keys;
+}
+
+/// Stable least-significant-digit radix sort by Morton key; digits that all keys share are skipped.
+void radix_sort(std::vector<SortKey>& keys) {
+    constexpr unsigned digit_bits = 11;
+    constexpr std::size_t buckets = std::size_t{1} << digit_bits;
+    std::vector<SortKey> other(keys.size());
+    for (unsigned shift = 0; shift < 63; shift += digit_bits) {
+        std::array<std::size_t, buckets> starts{};
+        for (const SortKey& key : keys) ++starts[key.morton >> shift & (buckets - 1)];
+        if (std::find(starts.begin(), starts.end(), keys.size()) != starts.end()) continue;
+        std::size_t next = 0;
+        for (std::size_t& start : starts) {
+            const std::size_t count = start;
+            start = next;
+            next += count;
+        }
+        for (const SortKey& key : keys) other[starts[key.morton >> shift & (buckets - 1)]++] = key;
+        keys.swap(other);
+    }
+}
+
+/// A position that FLANN can square: anything else would cost *other* queries their photons.
+bool is_usable(const Photon& photon) {
+    constexpr float largest = 1e18f;
+    const Vector& position = photon.position;
+    return std::abs(position.x) <= largest && std::abs(position.y) <= largest && std::abs(position.z) <= largest;
+}
+
+/// Keeps the k nearest accepted photons: in order for small k, which is faster there, as a heap for large.
+class NearestVisitor : public flann::ResultSet<float> {
+public:
+    /// `neighbours` is the caller's buffer, emptied here. k >= 1.
+    NearestVisitor(const std::vector<Photon>& photons, const Vector& position, const Vector& normal, std::size_t k,
+                   double max_squared_radius, std::vector<Neighbour>& neighbours)
+        : photons_(photons),
+          position_(position),
+          normal_(normal),
+          k_(k),
+          ordered_(k <= 128),
+          squared_radius_(max_squared_radius),
+          bound_(pruning_bound(max_squared_radius)),
+          neighbours_(neighbours) {
+        neighbours_.clear();
+    }
+
+    bool full() const override { return true; }    // the maximum radius bounds the search from the start
+    float worstDist() const override { return bound_; }
+    void addPoint(float, std::size_t index) override {
+        const Photon& photon = photons_[index];
+        const Neighbour neighbour{squared_distance_between(photon.position, position_), static_cast<std::uint32_t>(index)};
+        if (neighbour.squared_distance > squared_radius_ || !is_accepted(photon, normal_)) return;
+        if (neighbours_.size() == k_) {
+            if (!(neighbour < farthest())) return;
+            if (!ordered_) std::pop_heap(neighbours_.begin(), neighbours_.end());
+            neighbours_.pop_back();
+        }
+        if (ordered_) {
+            neighbours_.insert(std::upper_bound(neighbours_.begin(), neighbours_.end(), neighbour), neighbour);
+        } else {
+            neighbours_.push_back(neighbour);
+            std::push_heap(neighbours_.begin(), neighbours_.end());
+        }
+        if (neighbours_.size() == k_) {
+            squared_radius_ = farthest().squared_distance;
+            bound_ = pruning_bound(squared_radius_);
+        }
+    }
+
+    /// Nearest first, once the search is over.
+    void finish() {
+        if (!ordered_) std::sort_heap(neighbours_.begin(), neighbours_.end());
+    }
+
+private:
+    const Neighbour& farthest() const { return ordered_ ? neighbours_.back() : neighbours_.front(); }
+
+    const std::vector<Photon>& photons_;
+    const Vector position_;
+    const Vector normal_;
+    const std::size_t k_;
+    const bool ordered_;
+    double squared_radius_;    // shrinks to the k-th distance once there are k
+    float bound_;
+    std::vector<Neighbour>& neighbours_;
+};
+
+}  // namespace
+
+PhotonMap::PhotonMap(std::vector<Photon> photons) {
+    const std::size_t given = photons.size();
+    std::erase_if(photons, [](const Photon& photon) { return !is_usable(photon); });
+    nonfinite_ = given - photons.size();
+    if (photons.empty()) return;
+    if (photons.size() > 0x7fffffff)
+        throw InputError("photon map: expected fewer than 2^31 photons in one map, got " + std::to_string(photons.size()));
+
+    const std::uint64_t count = photons.size();
+    const std::uint64_t given_bytes = photons.capacity() * sizeof(Photon);
+    const std::uint64_t photon_bytes = count * sizeof(Photon);
+    std::vector<SortKey> keys = morton_keys(photons);
+    radix_sort(keys);
+    photons_.reserve(photons.size());
+    for (const SortKey& key : keys) photons_.push_back(photons[key.index]);
+    photons = {};
+    keys = {};
+
+    const flann::Matrix<float> positions(&photons_[0].position.x, photons_.size(), 3, sizeof(Photon));
+    index_ = std::make_unique<Index>(positions, flann::KDTreeSingleIndexParams(leaf_max_size, true));
+    index_->buildIndex();
+
+    // Three moments compete for the peak: sorting the keys (with the sort's second buffer), copying the photons into their
+    // order, and holding photons and index. FLANN reports its nodes and permutation, in an int that wraps at 2 GB, and not
+    // its pointer to each point nor its reordered copy of the positions.
+    const std::uint64_t while_sorting = given_bytes + 2 * count * sizeof(SortKey);
+    const std::uint64_t while_copying = given_bytes + count * sizeof(SortKey) + photon_bytes;
+    const std::uint64_t index_bytes =
+        static_cast<std::uint32_t>(index_->usedMemory()) + count * (sizeof(float*) + 3 * sizeof(float));
+    bytes_ = std::max({while_sorting, while_copying, photon_bytes + index_bytes});
+}
+
+void PhotonMap::search(flann::ResultSet<float>& result, const Vector& position) const {
+    if (!index_ || !is_finite(position)) return;
+    index_->findNeighbors(result, &position.x, flann::SearchParams());
+}
+
+void PhotonMap::find_nearest(const Vector& position, const Vector& normal, std::size_t k, double max_squared_radius,
+                             std::vector<Neighbour>& neighbours) const {
+    neighbours.clear();
+    if (k == 0) return;
+    NearestVisitor visitor(photons_, position, normal, k, max_squared_radius, neighbours);
+    search(visitor, position);
+    visitor.finish();
+}
+
+}  // namespace photonlab

@@ -1,0 +1,170 @@
+#include "scene/embree_scene.h"
+
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+namespace photonlab {
+
+namespace {
+
+/// Distances in [near, far] at which origin + t direction meets the surface, nearest first; up to two.
+struct Roots {
+    int count = 0;
+    double t[2] = {0.0, 0.0};
+};
+
+/// The quadratic in the form that does not cancel: the root of larger magnitude by addition, the other by division.
+Roots intersect_analytic(const Sphere& sphere, const VectorD& origin, const VectorD& direction) {
+    const VectorD offset = origin - VectorD(sphere.centre);
+    const double a = direction.length2();
+    const double half_b = offset.dot(direction);
+    const double radius = sphere.radius;
+    // The discriminant from the closest point's distance, which stays accurate for far origins.
+    const VectorD closest = offset - direction * (half_b / a);
+    const double discriminant = a * (radius * radius - closest.length2());
+    if (!(discriminant >= 0.0)) return {};
+    const double c = (offset.length() - radius) * (offset.length() + radius);
+    const double q = -(half_b + std::copysign(std::sqrt(discriminant), half_b));
+    double near = q / a;
+    double far = q != 0.0 ? c / q : near;
+    if (near > far) std::swap(near, far);
+    return {2, {near, far}};
+}
+
+Roots intersect_analytic(const Disk& disk, const VectorD& origin, const VectorD& direction) {
+    const VectorD normal(disk.frame.normal);
+    const double slope = direction.dot(normal);
+    if (slope == 0.0) return {};
+    const double t = (VectorD(disk.centre) - origin).dot(normal) / slope;
+    const VectorD offset = origin + direction * t - VectorD(disk.centre);
+    const double radius = disk.radius;
+    return offset.length2() <= radius * radius ? Roots{1, {t, 0.0}} : Roots{};
+}
+
+/// First root strictly inside the ray's interval, or nothing.
+std::optional<float> first_hit(const std::variant<Sphere, Disk>& shape, const RTCRay& ray) {
+    const VectorD origin(ray.org_x, ray.org_y, ray.org_z);
+    const VectorD direction(ray.dir_x, ray.dir_y, ray.dir_z);
+    const Roots roots = std::visit([&](const auto& s) { return intersect_analytic(s, origin, direction); }, shape);
+    for (int i = 0; i < roots.count; ++i) {
+        const double t = roots.t[i];
+        if (t > ray.tnear && t < ray.tfar) return static_cast<float>(t);
+    }
+    return std::nullopt;
+}
+
+const std::variant<Sphere, Disk>& shape_of(void* pointer) { return *static_cast<std::variant<Sphere, Disk>*>(pointer); }
+
+void set_bounds(const RTCBoundsFunctionArguments* arguments) {
+    const auto& shape = shape_of(arguments->geometryUserPtr);
+    Vector centre;
+    Vector reach;
+    if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+        centre = sphere->centre;
+        reach = Vector(sphere->radius);
+    } else {
+        const Disk& disk = std::get<Disk>(shape);
+        centre = disk.centre;
+        for (int axis = 0; axis < 3; ++axis) {
+            const float n = disk.frame.normal[axis];
+            reach[axis] = disk.radius * std::sqrt(std::max(0.0f, 1.0f - n * n));
+        }
+    }
+    // A little wider than the shape, so that rounding cannot put a hit outside its bounds.
+    const float slack = 4.0f * std::numeric_limits<float>::epsilon();
+    reach += (Vector(std::abs(centre.x), std::abs(centre.y), std::abs(centre.z)) + reach + Vector(slack)) * slack;
+    RTCBounds& bounds = *arguments->bounds_o;
+    bounds.lower_x = centre.x - reach.x;
+    bounds.lower_y = centre.y - reach.y;
+    bounds.lower_z = centre.z - reach.z;
+    bounds.upper_x = centre.x + reach.x;
+    bounds.upper_y = centre.y + reach.y;
+    bounds.upper_z = centre.z + reach.z;
+}
+
+// Only single rays are ever traced, so N is 1 and the packets are plain structs.
+void intersect_callback(const RTCIntersectFunctionNArguments* arguments) {
+    if (!arguments->valid[0]) return;
+    auto& query = *reinterpret_cast<RTCRayHit*>(arguments->rayhit);
+    const std::optional<float> t = first_hit(shape_of(arguments->geometryUserPtr), query.ray);
+    if (!t) return;
+    query.ray.tfar = *t;
+    query.hit.geomID = arguments->geomID;
+    query.hit.primID = arguments->primID;
+    query.hit.instID[0] = arguments->context->instID[0];
+    query.hit.u = query.hit.v = 0.0f;
+}
+
+void occluded_callback(const RTCOccludedFunctionNArguments* arguments) {
+    if (!arguments->valid[0]) return;
+    auto& ray = *reinterpret_cast<RTCRay*>(arguments->ray);
+    if (first_hit(shape_of(arguments->geometryUserPtr), ray)) ray.tfar = -infinity;
+}
+
+void fail(void*, RTCError, const char* message) { throw std::runtime_error(std::string("Embree: ") + message); }
+
+void require(const void* object) {
+    if (!object) throw std::runtime_error("Embree: out of memory");
+}
+
+RTCGeometry make_mesh(RTCDevice device, const TriangleMesh& mesh) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    const std::size_t position_bytes = mesh.positions.size() * sizeof(Vector);
+    const std::size_t triangle_bytes = mesh.triangles.size() * sizeof(mesh.triangles[0]);
+    void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vector),
+                                              mesh.positions.size());
+    void* triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                              sizeof(mesh.triangles[0]), mesh.triangles.size());
+    require(positions);
+    require(triangles);
+    std::memcpy(positions, mesh.positions.data(), position_bytes);
+    std::memcpy(triangles, mesh.triangles.data(), triangle_bytes);
+    return geometry;
+}
+
+RTCGeometry make_analytic(RTCDevice device, std::variant<Sphere, Disk>& shape) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, 1);
+    rtcSetGeometryUserData(geometry, &shape);
+    rtcSetGeometryBoundsFunction(geometry, set_bounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, intersect_callback);
+    rtcSetGeometryOccludedFunction(geometry, occluded_callback);
+    return geometry;
+}
+
+}  // namespace
+
+EmbreeScene::~EmbreeScene() {
+    if (scene) rtcReleaseScene(scene);
+    if (device) rtcReleaseDevice(device);
+}
+
+void EmbreeSceneDeleter::operator()(EmbreeScene* embree) const { delete embree; }
+
+std::unique_ptr<EmbreeScene, EmbreeSceneDeleter> build_embree_scene(const std::vector<Shape>& shapes) {
+    std::unique_ptr<EmbreeScene, EmbreeSceneDeleter> embree(new EmbreeScene);
+    embree->device = rtcNewDevice(nullptr);
+    require(embree->device);
+    rtcSetDeviceErrorFunction(embree->device, fail, nullptr);
+    embree->scene = rtcNewScene(embree->device);
+    rtcSetSceneFlags(embree->scene, RTC_SCENE_FLAG_ROBUST);
+
+    for (const Shape& shape : shapes) {
+        if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) embree->analytic.emplace_back(*sphere);
+        if (const auto* disk = std::get_if<Disk>(&shape.geometry)) embree->analytic.emplace_back(*disk);
+    }
+    std::size_t next_analytic = 0;
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        const auto* mesh = std::get_if<TriangleMesh>(&shapes[i].geometry);
+        RTCGeometry geometry = mesh ? make_mesh(embree->device, *mesh)
+                                    : make_analytic(embree->device, embree->analytic[next_analytic++]);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometryByID(embree->scene, geometry, static_cast<unsigned>(i));
+        rtcReleaseGeometry(geometry);
+    }
+    rtcCommitScene(embree->scene);
+    return embree;
+}
+
+}  // namespace photonlab

@@ -1,0 +1,344 @@
+#include "scene/scene.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "scene/embree_scene.h"
+
+namespace photonlab {
+
+namespace {
+
+struct Bounds {
+    VectorD lower = VectorD(std::numeric_limits<double>::infinity());
+    VectorD upper = VectorD(-std::numeric_limits<double>::infinity());
+
+    void include(const VectorD& point) {
+        for (int axis = 0; axis < 3; ++axis) {
+            lower[axis] = std::min(lower[axis], point[axis]);
+            upper[axis] = std::max(upper[axis], point[axis]);
+        }
+    }
+    bool is_empty() const { return lower.x > upper.x; }
+};
+
+void include_shape(Bounds& bounds, const ShapeDescription& shape) {
+    if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry)) {
+        for (const VectorD& position : mesh->positions) bounds.include(position);
+    } else if (const auto* sphere = std::get_if<SphereDescription>(&shape.geometry)) {
+        bounds.include(sphere->centre - VectorD(sphere->radius));
+        bounds.include(sphere->centre + VectorD(sphere->radius));
+    } else {
+        const auto& disk = std::get<DiskDescription>(shape.geometry);
+        VectorD reach;
+        for (int axis = 0; axis < 3; ++axis)
+            reach[axis] = disk.radius * std::sqrt(std::max(0.0, 1.0 - disk.normal[axis] * disk.normal[axis]));
+        bounds.include(disk.centre - reach);
+        bounds.include(disk.centre + reach);
+    }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// What cannot be rendered is refused here, whether it came from a file or from a program.
+
+void require_light(const ColorD& light, const std::string& place, std::string_view what) {
+    if (!is_finite(light) || light.x < 0.0 || light.y < 0.0 || light.z < 0.0)
+        throw InputError(place, fmt::format("{}: expected finite values of at least 0, got {} {} {}", what, light.x,
+                                            light.y, light.z));
+}
+
+void require_mesh(const MeshDescription& mesh, const std::string& place) {
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+        if (!is_finite(mesh.positions[i])) throw InputError(place, fmt::format("vertex {} is not finite", i + 1));
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const auto& triangle = mesh.triangles[i];
+        if (std::max({triangle.x, triangle.y, triangle.z}) >= mesh.positions.size())
+            throw InputError(place, fmt::format("triangle {}: expected vertices below {}, got {} {} {}", i + 1,
+                                                mesh.positions.size(), triangle.x, triangle.y, triangle.z));
+    }
+    if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size())
+        throw InputError(place, fmt::format("expected a normal for each of {} vertices, got {}", mesh.positions.size(),
+                                            mesh.normals.size()));
+    if (!mesh.texture_coordinates.empty() && mesh.texture_coordinates.size() != mesh.positions.size())
+        throw InputError(place, fmt::format("expected texture coordinates for each of {} vertices, got {}",
+                                            mesh.positions.size(), mesh.texture_coordinates.size()));
+}
+
+void require_valid(const SceneDescription& description) {
+    for (const Material& material : description.materials)
+        if (const auto* diffuse = std::get_if<Diffuse>(&material.bsdf)) {
+            const Color& r = diffuse->reflectance;
+            const bool valid = is_finite(r) && std::min({r.x, r.y, r.z}) >= 0.0f && std::max({r.x, r.y, r.z}) <= 1.0f;
+            if (!valid)
+                throw InputError(fmt::format("material \"{}\": reflectance: expected values in [0, 1], got {} {} {}",
+                                             material.id, r.x, r.y, r.z));
+        }
+    for (const ShapeDescription& shape : description.shapes) {
+        if (shape.material >= description.materials.size())
+            throw InputError(shape.place, fmt::format("material {} of {}", shape.material, description.materials.size()));
+        if (shape.radiance) require_light(*shape.radiance, shape.place, "radiance");
+        if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry)) require_mesh(*mesh, shape.place);
+        const auto require_round = [&](const VectorD& centre, double radius) {
+            if (!is_finite(centre) || !std::isfinite(radius) || !(radius > 0.0))
+                throw InputError(shape.place, fmt::format("expected a finite centre and a radius above 0, got radius {}", radius));
+        };
+        if (const auto* sphere = std::get_if<SphereDescription>(&shape.geometry)) require_round(sphere->centre, sphere->radius);
+        if (const auto* disk = std::get_if<DiskDescription>(&shape.geometry)) require_round(disk->centre, disk->radius);
+    }
+    for (const PointLightDescription& light : description.point_lights) {
+        require_light(light.intensity, light.place, "intensity");
+        if (!is_finite(light.position)) throw InputError(light.place, "position is not finite");
+    }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+/// From scene units to the unit box, in double.
+struct ToUnitBox {
+    VectorD centre;
+    double unit_length;
+
+    Vector operator()(const VectorD& point) const { return Vector((point - centre) / unit_length); }
+    float length(double scene_units) const { return static_cast<float>(scene_units / unit_length); }
+};
+
+double triangle_area(const TriangleMesh& mesh, const Imath::Vec3<std::uint32_t>& triangle) {
+    const VectorD a(mesh.positions[triangle.x]);
+    const VectorD b(mesh.positions[triangle.y]);
+    const VectorD c(mesh.positions[triangle.z]);
+    return 0.5 * (b - a).cross(c - a).length();
+}
+
+Shape make_shape(const ShapeDescription& description, const ToUnitBox& to_unit_box) {
+    Shape shape;
+    shape.material = static_cast<std::uint32_t>(description.material);
+    if (const auto* source = std::get_if<MeshDescription>(&description.geometry)) {
+        TriangleMesh mesh;
+        mesh.triangles = source->triangles;
+        for (const VectorD& position : source->positions) mesh.positions.push_back(to_unit_box(position));
+        for (const VectorD& normal : source->normals) mesh.normals.push_back(Vector(normal));
+        for (const Imath::V2d& uv : source->texture_coordinates)
+            mesh.texture_coordinates.emplace_back(static_cast<float>(uv.x), static_cast<float>(uv.y));
+        shape.area = 0.0;
+        for (const auto& triangle : mesh.triangles) {
+            shape.area += triangle_area(mesh, triangle);
+            if (description.radiance) shape.triangle_cdf.push_back(shape.area);
+        }
+        if (shape.area > 0.0)
+            for (double& share : shape.triangle_cdf) share /= shape.area;
+        shape.geometry = std::move(mesh);
+    } else if (const auto* sphere = std::get_if<SphereDescription>(&description.geometry)) {
+        const float radius = to_unit_box.length(sphere->radius);
+        shape.geometry = Sphere{to_unit_box(sphere->centre), radius, sphere->flip_normals ? -1.0f : 1.0f};
+        shape.area = 4.0 * pi * radius * radius;
+    } else {
+        const auto& disk = std::get<DiskDescription>(description.geometry);
+        const float radius = to_unit_box.length(disk.radius);
+        shape.geometry = Disk{make_frame(Vector(disk.normal)), to_unit_box(disk.centre), radius};
+        shape.area = pi * radius * radius;
+    }
+    return shape;
+}
+
+Camera make_camera(const CameraDescription& description, std::optional<Resolution> resolution, const ToUnitBox& to_unit_box) {
+    const int width = resolution ? resolution->width : description.width;
+    const int height = resolution ? resolution->height : description.height;
+    if (width < 1 || height < 1)
+        throw InputError(fmt::format("resolution: expected at least 1 x 1, got {} x {}", width, height));
+    if (!(description.fov_x > 0.0 && description.fov_x < 180.0))
+        throw InputError(fmt::format("camera: expected a field of view in (0, 180) degrees, got {}", description.fov_x));
+    const Matrix& m = description.to_world;
+    const auto row = [&](int i) { return VectorD(m[i][0], m[i][1], m[i][2]); };
+    const VectorD left = row(0).normalized();
+    const VectorD up = row(1).normalized();
+    const VectorD forward = row(2).normalized();
+    const VectorD position = row(3);
+    if (!is_finite(position) || left.length2() == 0.0 || up.length2() == 0.0 || forward.length2() == 0.0)
+        throw InputError("camera: to_world: expected an invertible transform with finite values");
+    const double image_width = 2.0 * std::tan(description.fov_x * pi / 360.0);    // at distance 1
+    const double image_height = image_width * height / width;                     // square pixels
+    return {.position = to_unit_box(position),
+            .forward = forward,
+            .right = -left * image_width,
+            .down = -up * image_height,
+            .width = width,
+            .height = height,
+            .pixel_angle = image_width / width};
+}
+
+/// Lists the lights that have power, and with which probability each is chosen. Ratios of power, not power, so that light
+/// times a constant changes no choice.
+void add_emitters(Scene& scene, const SceneDescription& description, const ToUnitBox& to_unit_box) {
+    for (std::size_t i = 0; i < description.shapes.size(); ++i) {
+        const std::optional<ColorD>& radiance = description.shapes[i].radiance;
+        Shape& shape = scene.shapes[i];
+        if (!radiance || is_black(*radiance) || !(shape.area > 0.0)) continue;
+        shape.emitter = static_cast<std::uint32_t>(scene.emitters.size());
+        scene.emitters.push_back({AreaLight{*radiance, static_cast<std::uint32_t>(i)}, *radiance * (pi * shape.area), 0.0, 0.0});
+    }
+    const double unit_area = to_unit_box.unit_length * to_unit_box.unit_length;
+    for (const PointLightDescription& light : description.point_lights) {
+        if (is_black(light.intensity)) continue;
+        const ColorD intensity = light.intensity / unit_area;
+        scene.emitters.push_back({PointLight{intensity, to_unit_box(light.position)}, intensity * (4.0 * pi), 0.0, 0.0});
+    }
+    for (const Emitter& emitter : scene.emitters) scene.total_power += mean_channel(emitter.power);
+    double running = 0.0;
+    for (Emitter& emitter : scene.emitters) {
+        emitter.choice_probability = mean_channel(emitter.power) / scene.total_power;
+        running += emitter.choice_probability;
+        emitter.choice_cdf = running;
+    }
+    if (!scene.emitters.empty()) scene.emitters.back().choice_cdf = 1.0;
+    if (!std::isfinite(scene.total_power))
+        throw InputError("the emitted power overflows double precision; scale the lights down");
+}
+
+}  // namespace
+
+Vector Camera::direction(double x, double y) const {
+    return Vector((forward + right * (x / width - 0.5) + down * (y / height - 0.5)).normalized());
+}
+
+Scene build_scene(const SceneDescription& description, std::optional<Resolution> resolution) {
+    require_valid(description);
+    Bounds bounds;
+    for (const ShapeDescription& shape : description.shapes) include_shape(bounds, shape);
+    Bounds box = bounds;
+    if (box.is_empty())
+        for (const PointLightDescription& light : description.point_lights) box.include(light.position);
+
+    ToUnitBox to_unit_box{VectorD(0.0), 1.0};
+    if (!box.is_empty()) {
+        const VectorD extent = box.upper - box.lower;
+        const double largest = std::max({extent.x, extent.y, extent.z});
+        to_unit_box = {(box.lower + box.upper) * 0.5, largest > 0.0 ? largest : 1.0};
+    }
+
+    Scene scene;
+    scene.name = description.name;
+    scene.hash = description.hash;
+    scene.notes = description.notes;
+    scene.unit_length = to_unit_box.unit_length;
+    scene.centre = to_unit_box.centre;
+    scene.materials = description.materials;
+    scene.max_depth = description.max_depth;
+    if (!bounds.is_empty())
+        scene.bounding_radius = to_unit_box.length(0.5 * (bounds.upper - bounds.lower).length());
+    for (const ShapeDescription& shape : description.shapes) scene.shapes.push_back(make_shape(shape, to_unit_box));
+    add_emitters(scene, description, to_unit_box);
+    scene.camera = make_camera(description.camera, resolution, to_unit_box);
+    scene.embree = build_embree_scene(scene.shapes);
+    return scene;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// Completes a hit on a triangle. The position comes from the vertices, which is more accurate than origin + t direction.
+void complete(Hit& hit, const TriangleMesh& mesh, const Ray& ray, float u, float v) {
+    const auto& triangle = mesh.triangles[hit.primitive];
+    const float w = 1.0f - u - v;
+    const Vector& a = mesh.positions[triangle.x];
+    const Vector& b = mesh.positions[triangle.y];
+    const Vector& c = mesh.positions[triangle.z];
+    hit.position = a * w + b * u + c * v;
+    const VectorD normal = (VectorD(b) - VectorD(a)).cross(VectorD(c) - VectorD(a));
+    // A triangle without area has no normal of its own; facing the ray is as good as any.
+    hit.geometric_normal = normal.length2() > 0.0 ? Vector(normal.normalized()) : -ray.direction;
+    hit.shading_normal = hit.geometric_normal;
+    if (!mesh.normals.empty()) {
+        const VectorD interpolated = VectorD(mesh.normals[triangle.x]) * w + VectorD(mesh.normals[triangle.y]) * u +
+                                     VectorD(mesh.normals[triangle.z]) * v;
+        if (interpolated.length2() > 0.0) {
+            hit.shading_normal = Vector(interpolated.normalized());
+            if (hit.shading_normal.dot(hit.geometric_normal) < 0.0f) hit.shading_normal = -hit.shading_normal;
+        }
+    }
+    if (!mesh.texture_coordinates.empty())
+        hit.texture_coordinate = mesh.texture_coordinates[triangle.x] * w + mesh.texture_coordinates[triangle.y] * u +
+                                 mesh.texture_coordinates[triangle.z] * v;
+}
+
+void complete(Hit& hit, const Sphere& sphere, const Ray& ray, float, float) {
+    const VectorD centre(sphere.centre);
+    const VectorD outward = (VectorD(ray.origin) + VectorD(ray.direction) * hit.distance - centre).normalized();
+    hit.position = Vector(centre + outward * sphere.radius);
+    hit.geometric_normal = Vector(outward) * sphere.orientation;
+    hit.shading_normal = hit.geometric_normal;
+}
+
+void complete(Hit& hit, const Disk& disk, const Ray& ray, float, float) {
+    const VectorD normal(disk.frame.normal);
+    const VectorD centre(disk.centre);
+    const VectorD position = VectorD(ray.origin) + VectorD(ray.direction) * hit.distance;
+    hit.position = Vector(position - normal * (position - centre).dot(normal));
+    hit.geometric_normal = disk.frame.normal;
+    hit.shading_normal = disk.frame.normal;
+}
+
+}  // namespace
+
+std::optional<Hit> intersect(const Scene& scene, const Ray& ray) {
+    RTCRayHit query{};
+    query.ray.org_x = ray.origin.x;
+    query.ray.org_y = ray.origin.y;
+    query.ray.org_z = ray.origin.z;
+    query.ray.dir_x = ray.direction.x;
+    query.ray.dir_y = ray.direction.y;
+    query.ray.dir_z = ray.direction.z;
+    query.ray.tnear = 0.0f;
+    query.ray.tfar = infinity;
+    query.ray.mask = ~0u;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    trace_closest(scene.embree->scene, query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+
+    Hit hit{};
+    hit.distance = query.ray.tfar;
+    hit.shape = query.hit.geomID;
+    hit.primitive = query.hit.primID;
+    std::visit([&](const auto& geometry) { complete(hit, geometry, ray, query.hit.u, query.hit.v); },
+               scene.shapes[hit.shape].geometry);
+    return hit;
+}
+
+bool is_occluded(const Scene& scene, const Vector& from, const Vector& to) {
+    const Vector direction = to - from;
+    RTCRay ray{};
+    ray.org_x = from.x;
+    ray.org_y = from.y;
+    ray.org_z = from.z;
+    ray.dir_x = direction.x;
+    ray.dir_y = direction.y;
+    ray.dir_z = direction.z;
+    ray.tnear = 0.0f;
+    // Both ends were moved off their surfaces by far more than this; it only keeps the rounding of `direction` from
+    // reaching past the far end.
+    ray.tfar = 1.0f - 4.0f * std::numeric_limits<float>::epsilon();
+    ray.mask = ~0u;
+    trace_any(scene.embree->scene, ray);
+    return ray.tfar < 0.0f;
+}
+
+std::optional<Surface> orient(const Scene& scene, const Hit& hit, const Vector& outgoing) {
+    const Material& material = scene.materials[scene.shapes[hit.shape].material];
+    const float geometric = hit.geometric_normal.dot(outgoing);
+    const float shading = hit.shading_normal.dot(outgoing);
+    if (!(geometric * shading > 0.0f)) return std::nullopt;
+    if (geometric < 0.0f && !material.two_sided) return std::nullopt;
+    if (is_black(material)) return std::nullopt;
+    const float side = std::copysign(1.0f, geometric);
+    return Surface{.material = &material,
+                   .frame = make_frame(hit.shading_normal * side),
+                   .geometric_normal = hit.geometric_normal * side,
+                   .position = hit.position};
+}
+
+bool sides_agree(const Surface& surface, const Vector& direction) {
+    return surface.frame.normal.dot(direction) * surface.geometric_normal.dot(direction) > 0.0f;
+}
+
+}  // namespace photonlab

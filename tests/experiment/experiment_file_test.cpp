@@ -1,0 +1,147 @@
+#include "experiment/experiment_file.h"
+
+#include <gtest/gtest.h>
+
+#include "test_folder.h"
+
+namespace photonlab {
+namespace {
+
+/// Reads an experiment of this text in a folder that holds the files it names.
+class ExperimentFile : public ::testing::Test {
+protected:
+    ExperimentFile() {
+        folder_.write("box/scene.xml", "");
+        folder_.write("lamp.xml", "");
+    }
+    Experiment read(const std::string& text, std::optional<SmokeLimits> smoke = std::nullopt) {
+        return read_experiment(folder_.write("question.toml", text), smoke);
+    }
+    std::string refusal(const std::string& text) {
+        std::string message = message_of([&] { read(text); });
+        const std::string prefix = (folder_ / "question.toml").string();
+        return message.starts_with(prefix) ? message.substr(prefix.size()) : message;
+    }
+    std::vector<std::string> names(const Experiment& experiment) {
+        std::vector<std::string> result;
+        for (const ExperimentRun& run : experiment.runs) result.push_back(run.name);
+        return result;
+    }
+    TestFolder folder_;
+};
+
+const std::string least = "scenes = [\"box/scene.xml\"]\npasses = 8\n";
+const std::string ppm = "[[method]]\nintegrator = \"ppm\"\n";
+
+TEST_F(ExperimentFile, IsTheProductOfScenesMethodsAxesAndSeeds) {
+    const Experiment experiment = read(
+        "title = \"Why?\"\nscenes = [\"box/scene.xml\", { path = \"lamp.xml\" }]\npasses = 8\nseeds = 2\n"
+        "[[method]]\nintegrator = \"ppm\"\nalpha = [0.5, 0.7]\n"
+        "[[method]]\nname = \"pm\"\nintegrator = \"photonmapper\"\nk = 50\nmode = \"nearest\"\n");
+    EXPECT_EQ(experiment.title, "Why?");
+    EXPECT_EQ(experiment.name, "question");
+    EXPECT_EQ(
+        names(experiment),
+        (std::vector<std::string>{"box_ppm_alpha-0.5_seed-1", "box_ppm_alpha-0.5_seed-2", "box_ppm_alpha-0.7_seed-1",
+                                  "box_ppm_alpha-0.7_seed-2", "box_pm_seed-1", "box_pm_seed-2",
+                                  "lamp_ppm_alpha-0.5_seed-1", "lamp_ppm_alpha-0.5_seed-2", "lamp_ppm_alpha-0.7_seed-1",
+                                  "lamp_ppm_alpha-0.7_seed-2", "lamp_pm_seed-1", "lamp_pm_seed-2"}));
+    EXPECT_EQ(experiment.runs[2].settings.values.alpha, 0.7);
+    EXPECT_EQ(experiment.runs[4].settings.values.k, 50);
+}
+
+TEST_F(ExperimentFile, TopLevelSettingsAreDefaultsWhereTheyAreUsed) {
+    const Experiment experiment =
+        read(least + "photons_per_pass = 77\nalpha = [0.5, 0.9]\n" + ppm +
+             "[[method]]\nintegrator = \"path\"\n"
+             "[[method]]\nname = \"few\"\nintegrator = \"ppm\"\nphotons_per_pass = 5\nalpha = 0.6\n");
+    EXPECT_EQ(names(experiment), (std::vector<std::string>{"box_ppm_alpha-0.5_seed-1", "box_ppm_alpha-0.9_seed-1",
+                                                           "box_path_seed-1", "box_few_seed-1"}));
+    EXPECT_EQ(experiment.runs[0].settings.values.photons_per_pass, 77u);
+    EXPECT_EQ(experiment.runs[3].settings.values.photons_per_pass, 5u);
+}
+
+TEST_F(ExperimentFile, PassZeroAndTheLastAreAlwaysRecorded) {
+    using Passes = std::vector<std::uint64_t>;
+    EXPECT_EQ(read("scenes = [\"lamp.xml\"]\npasses = 11\n" + ppm).recorded, (Passes{0, 1, 2, 4, 8, 11}));
+    EXPECT_EQ(read(least + "record = \"all\"\n" + ppm).recorded, (Passes{0, 1, 2, 3, 4, 5, 6, 7, 8}));
+    const Experiment listed = read(least + "record = [3, 2]\nsnapshots = [1]\n" + ppm);
+    EXPECT_EQ(listed.recorded, (Passes{0, 2, 3, 8}));
+    EXPECT_EQ(listed.snapshots, (Passes{1, 8}));
+}
+
+TEST_F(ExperimentFile, SmokeShrinksPassesPhotonsAndSeeds) {
+    const Experiment experiment =
+        read(least + "seeds = [5, 6, 7]\nrecord = [3, 8]\nsnapshots = [8]\n" + ppm, SmokeLimits{});
+    EXPECT_EQ(experiment.name, "question-smoke");
+    EXPECT_EQ(experiment.passes, 4u);
+    EXPECT_EQ(experiment.recorded, (std::vector<std::uint64_t>{0, 3, 4}));
+    EXPECT_EQ(experiment.snapshots, (std::vector<std::uint64_t>{4}));
+    ASSERT_EQ(experiment.runs.size(), 2u);
+    EXPECT_EQ(experiment.runs[0].settings.values.photons_per_pass, 2000u);
+}
+
+TEST_F(ExperimentFile, RefusesBadInputWithItsPlace) {
+    struct Case {
+        std::string text;
+        std::string message;  // how it begins
+    };
+    const std::vector<Case> cases{
+        {"scenes = [", ":1: "},
+        {"passes = 8\n" + ppm, ": scenes: expected a list of scene files"},
+        {"scenes = [\"lamp.xml\"]\n" + ppm, ": passes is missing"},
+        {least, ": method: expected at least one table [[method]]"},
+        {least + "colour = 1\n" + ppm,
+         ":3: unknown key \"colour\"; known here: title, scenes, method, seeds, passes, record"},
+        {least + ppm + "alhpa = 0.5\n",
+         ":5: unknown key \"alhpa\"; known here: name, integrator, mode, schedule, alpha"},
+        {"scenes = [{ path = \"lamp.xml\", light = 1 }]\npasses = 1\n" + ppm,
+         ":1: unknown key \"light\"; known here: path"},
+        {"scenes = [\"gone.xml\"]\npasses = 1\n" + ppm, ":1: scenes: "},
+        {"scenes = [{ path = \"lamp.xml\", reference = \"gone\" }]\npasses = 1\n" + ppm, ":1: reference: "},
+        {least + "[[method]]\nalpha = 0.5\n", ":3: method: integrator is missing"},
+        {least + "[[method]]\nintegrator = \"pmm\"\n",
+         ":4: unknown integrator \"pmm\"; known here: path, photonmapper, ppm"},
+        {least + ppm + "k = 50\n", ":5: k is not used by integrator \"ppm\""},
+        {least + "[[method]]\nintegrator = \"photonmapper\"\nk = 50\n",
+         ":5: k is not used by integrator \"photonmapper\""},
+        {least + ppm + "alpha = [0.5, 0.0]\n", ":5: "},
+        {least + ppm + "alpha = nan\n", ":5: "},
+        {least + ppm + "alpha = \"half\"\n", ":5: alpha: expected a number, got \"half\""},
+        {least + ppm + "alpha = []\n", ":5: alpha: the list of values is empty"},
+        {least + ppm + "alpha = [[0.5]]\n", ":5: alpha: expected a number, a name, or a list of those"},
+        {least + ppm + "alpha = [0.5, 0.5]\n", ":3: two runs are called box_ppm_alpha-0.5_seed-1"},
+        {least + ppm + ppm, ":5: two runs are called box_ppm_seed-1"},
+        {least + ppm + "radius = -1\n", ":5: radius: expected \"auto\" or a length above 0"},
+        {least + ppm + "radius = true\n", ":5: radius: expected \"auto\" or a length in scene units, got true"},
+        {least + ppm + "kernel = \"box\"\n", ":5: unknown kernel \"box\"; known here: disc"},
+        {least + ppm + "direct_samples = 0\n", ":5: direct_samples: expected at least 1"},
+        {least + ppm + "photons_per_pass = 0\n", ":5: photons_per_pass: expected at least 1"},
+        {least + ppm + "max_depth = 0\n", ":5: max_depth: expected -1"},
+        {least + "k = 50\n" + ppm, ":3: k is used by no method"},
+        {least + "seeds = 0\n" + ppm, ":3: seeds: expected a whole number from 1 to"},
+        {least + "seeds = [1, 1]\n" + ppm, ":4: two runs are called"},
+        {least + "record = \"some\"\n" + ppm, ":3: unknown record \"some\"; known here: all, powers-of-two"},
+        {least + "record = [9]\n" + ppm, ":3: record: expected a whole number from 0 to 8, got 9"},
+        {least + "snapshots = [-1]\n" + ppm, ":3: snapshots: expected a whole number from 0 to 8, got -1"},
+        {least + "resolution = [16]\n" + ppm, ":3: resolution: expected [width, height]"},
+        {least + "samples_per_pixel = 3\n" + ppm, ":3: samples_per_pixel: expected a perfect square"},
+        {least + "threads = 0\n" + ppm, ":3: threads: expected a whole number from 1"},
+        {"scenes = [\"lamp.xml\"]\npasses = 1.5\n" + ppm, ":2: passes: expected a whole number"},
+    };
+    for (const Case& bad : cases) {
+        const std::string message = refusal(bad.text);
+        EXPECT_TRUE(message.starts_with(bad.message))
+            << bad.text << "\n  says:     " << message << "\n  expected: " << bad.message;
+    }
+}
+
+TEST_F(ExperimentFile, TheDemonstrationIsSound) {
+    const std::filesystem::path demo = std::filesystem::path(PHOTONLAB_SOURCE_DIR) / "experiments/demo.toml";
+    if (!std::filesystem::exists(std::filesystem::path(PHOTONLAB_SOURCE_DIR) / "reference/cornell-box"))
+        GTEST_SKIP() << "its scene or reference is not here";
+    EXPECT_EQ(read_experiment(demo).runs.size(), 20u);
+}
+
+}  // namespace
+}  // namespace photonlab

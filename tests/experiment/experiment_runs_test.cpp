@@ -1,0 +1,192 @@
+#include "experiment/experiment_runs.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "experiment/recorder.h"
+#include "experiment/reference_store.h"
+#include "image/exr.h"
+#include "test_folder.h"
+
+namespace photonlab {
+namespace {
+
+using Row = std::map<std::string, std::string>;
+
+std::vector<Row> read_csv(const std::filesystem::path& file) {
+    const auto split = [](const std::string& line) {
+        std::vector<std::string> cells{""};
+        for (const char c : line) {
+            if (c == ',')
+                cells.emplace_back();
+            else
+                cells.back() += c;
+        }
+        return cells;
+    };
+    std::istringstream stream(read_text_file(file));
+    std::string line;
+    std::getline(stream, line);
+    const std::vector<std::string> names = split(line);
+    std::vector<Row> rows;
+    while (std::getline(stream, line)) {
+        const std::vector<std::string> cells = split(line);
+        EXPECT_EQ(cells.size(), names.size()) << line;
+        Row& row = rows.emplace_back();
+        for (std::size_t i = 0; i < names.size(); ++i) row[names[i]] = cells.at(i);
+    }
+    return rows;
+}
+
+/// A small experiment with a small reference.
+class ExperimentRuns : public ::testing::Test {
+protected:
+    ExperimentRuns() {
+        const Scene scene = build_scene(load_scene_file(folder_.write("walls/scene.xml", two_walls_scene)));
+        ReferenceSettings settings;
+        settings.scene_file = folder_ / "walls/scene.xml";
+        settings.samples = 64;
+        settings.max_depth = scene.max_depth;
+        add_reference_samples(scene, settings, folder_ / "reference");
+    }
+
+    ExperimentOutcome run(const std::string& settings = "", std::optional<std::string> only = std::nullopt) {
+        folder_.write("tiny.toml",
+                      "title = \"Does it run?\"\npasses = 3\nseeds = 2\nthreads = 1\nsnapshots = [1]\n"
+                      "scenes = [{ path = \"walls/scene.xml\", reference = \"reference\" }]\n"
+                      "photons_per_pass = 400\n" +
+                          settings +
+                          "[[method]]\nintegrator = \"ppm\"\n"
+                          "[[method]]\nname = \"nearest\"\nintegrator = \"photonmapper\"\nmode = \"nearest\"\nk = 20\n"
+                          "[[method]]\nname = \"photons-only\"\nintegrator = \"ppm\"\ndirect = \"photons\"\n"
+                          "[[method]]\nintegrator = \"path\"\n");
+        const Experiment experiment = read_experiment(folder_ / "tiny.toml");
+        return run_experiment(experiment, prepare_experiment(experiment, results(), only), results());
+    }
+    std::filesystem::path results() { return folder_ / "results"; }
+
+    TestFolder folder_;
+};
+
+TEST_F(ExperimentRuns, RecordsEveryRunPassAndComponent) {
+    const ExperimentOutcome outcome = run();
+    EXPECT_EQ(outcome.ran, 8u);
+    EXPECT_EQ(outcome.merged, 8u);
+    const std::vector<Row> rows = read_csv(outcome.records);
+    ASSERT_EQ(rows.size(), 8u * 4u * 4u);  // runs, passes 0 1 2 3, components
+
+    std::map<std::string, double> paths;
+    for (const Row& row : rows) {
+        EXPECT_EQ(row.at("schema"), "1");
+        EXPECT_EQ(row.at("experiment"), "tiny");
+        EXPECT_EQ(row.at("scene"), "walls");
+        EXPECT_EQ(row.at("max_depth"), "5");
+        EXPECT_EQ(row.at("width"), "12");
+        EXPECT_EQ(row.at("nonfinite"), "0");
+        const bool carried = row.at("direct") == "photons";
+        if (carried && row.at("component") == "direct") {
+            EXPECT_EQ(row.at("mse"), "");
+            continue;
+        }
+        const double mse = std::stod(row.at("mse"));
+        EXPECT_DOUBLE_EQ(std::stod(row.at("rmse")), std::sqrt(mse));
+        EXPECT_NE(row.at("reference_floor"), "");
+        if (row.at("component") == "emission") {
+            EXPECT_LT(mse, 1e-12);
+        }
+        if (row.at("integrator") == "path") {
+            EXPECT_EQ(row.at("paths_emitted"), "");
+            continue;
+        }
+        EXPECT_EQ(row.at("paths_emitted"), std::to_string(400 * std::stoi(row.at("pass"))));
+        if (row.at("component") == "total") {
+            EXPECT_TRUE(row.at("pass") == "0" || std::stod(row.at("paths_emitted")) > paths[row.at("run")]);
+            paths[row.at("run")] = std::stod(row.at("paths_emitted"));
+        }
+        if (row.at("pass") == "0") {
+            EXPECT_EQ(row.at("photons_gathered"), "0");
+        }
+    }
+}
+
+TEST_F(ExperimentRuns, ErrorsAreThoseOfTheImage) {
+    run();
+    const Image image = read_exr(results() / "runs/walls_ppm_seed-1/snapshots/pass-000003.exr");
+    const Reference reference = load_reference(folder_ / "reference", std::nullopt);
+    for (const Row& row : read_csv(results() / "runs/walls_ppm_seed-1/iterations.csv"))
+        if (row.at("pass") == "3") {
+            EXPECT_EQ(std::stod(row.at("mse")), judge(image, reference, row.at("component"), false)->mse);
+        }
+}
+
+TEST_F(ExperimentRuns, SaysHowEachRunWasMade) {
+    run();
+    const Json json = Json::parse(read_text_file(results() / "runs/walls_nearest_seed-2/run.json"));
+    EXPECT_EQ(json.at("finished"), true);
+    EXPECT_EQ(json.at("title"), "Does it run?");
+    EXPECT_EQ(json.at("settings").at("k"), 20);
+    EXPECT_TRUE(json.at("settings").at("alpha").is_null());
+    EXPECT_EQ(json.at("seed"), 2);
+    EXPECT_EQ(json.at("counters").at("paths_emitted"), 1200);
+    ASSERT_EQ(json.at("snapshots").size(), 2u);
+    EXPECT_EQ(json.at("snapshots")[0].at("file"), "snapshots/pass-000001.exr");
+    EXPECT_TRUE(std::filesystem::exists(results() / "runs/walls_nearest_seed-2/snapshots/pass-000003.exr"));
+    for (const char* key : {"program", "processor", "started", "scene", "reference", "working_directory", "radius"})
+        EXPECT_TRUE(json.contains(key)) << key;
+}
+
+TEST_F(ExperimentRuns, FinishedRunsAreSkippedAndChangedOnesMadeAgain) {
+    run();
+    const std::string before = read_text_file(results() / "iterations.csv");
+    ExperimentOutcome outcome = run();
+    EXPECT_EQ(outcome.ran, 0u);
+    EXPECT_EQ(outcome.skipped, 8u);
+    EXPECT_EQ(read_text_file(results() / "iterations.csv"), before);
+
+    outcome = run("max_radius = 0.5\n");  // used by `nearest` alone
+    EXPECT_EQ(outcome.ran, 2u);
+    EXPECT_EQ(outcome.skipped, 6u);
+    for (const Row& row : read_csv(results() / "iterations.csv")) {
+        EXPECT_EQ(row.at("max_radius"), row.at("integrator") == "photonmapper" ? "0.5" : "");
+    }
+}
+
+TEST_F(ExperimentRuns, AnInterruptedRunIsMadeAgain) {
+    run();
+    const std::filesystem::path folder = results() / "runs/walls_ppm_seed-1";
+    const std::string rows = read_text_file(folder / "iterations.csv");
+    std::filesystem::remove(folder / "run.json");
+    write_text_file(folder / "iterations.csv", rows.substr(0, rows.size() / 2));
+    EXPECT_EQ(run().ran, 1u);
+    EXPECT_EQ(read_csv(folder / "iterations.csv").size(), 16u);
+}
+
+TEST_F(ExperimentRuns, OnlyTheSelectedRunsAreMade) {
+    EXPECT_EQ(run("", "walls_ppm_seed-1").ran, 1u);
+    const ExperimentOutcome outcome = run("", "*_seed-2");
+    EXPECT_EQ(outcome.ran, 4u);
+    EXPECT_EQ(outcome.merged, 5u);
+    const std::string message = message_of([&] { run("", "walls_pmp_*"); });
+    EXPECT_TRUE(message.starts_with("--only walls_pmp_*: no run is called that; the runs are\n  walls_ppm_seed-1\n"))
+        << message;
+}
+
+TEST_F(ExperimentRuns, AReferenceOfAnotherDepthIsRefusedBeforeAnythingRuns) {
+    const std::string message = message_of([&] { run("max_depth = 4\n"); });
+    EXPECT_NE(message.find("max_depth is 5 in the reference and 4 here"), std::string::npos) << message;
+    EXPECT_FALSE(std::filesystem::exists(results()));
+}
+
+TEST_F(ExperimentRuns, ListsRunsWithTimeAndMemory) {
+    run("", "walls_path_seed-1");
+    const Experiment experiment = read_experiment(folder_ / "tiny.toml");
+    const std::string list = list_runs(experiment, prepare_experiment(experiment, results()));
+    EXPECT_NE(list.find("walls_ppm_seed-1           about "), std::string::npos) << list;
+    EXPECT_NE(list.find("walls_path_seed-1          finished"), std::string::npos) << list;
+    EXPECT_NE(list.find("8 runs of 3 passes"), std::string::npos) << list;
+}
+
+}  // namespace
+}  // namespace photonlab

@@ -1,0 +1,133 @@
+#include "experiment/recorder.h"
+
+#include <gtest/gtest.h>
+
+#include "test_folder.h"
+
+namespace photonlab {
+namespace {
+
+std::vector<std::string> cells(const std::string& line) {
+    std::vector<std::string> result{""};
+    for (const char c : line) {
+        if (c == ',')
+            result.emplace_back();
+        else
+            result.back() += c;
+    }
+    return result;
+}
+
+std::string cell(const Record& record, const std::string& column) {
+    const std::vector<std::string> names = cells(csv_header());
+    const auto found = std::find(names.begin(), names.end(), column);
+    return found == names.end() ? "no such column"
+                                : cells(csv_row(record))[static_cast<std::size_t>(found - names.begin())];
+}
+
+TEST(Records, ColumnsAreThoseOfTheContract) {
+    EXPECT_EQ(
+        csv_header(),
+        "schema,experiment,run,scene,integrator,mode,schedule,alpha,k,radius_rule,radius_initial,max_radius,kernel,"
+        "direct,direct_samples,max_depth,photons_per_pass,width,height,samples_per_pixel,hit_points,seed,threads,"
+        "pass,component,"
+        "paths_emitted,photons_stored,photons_gathered,seconds,cpu_seconds,seconds_trace,seconds_build,seconds_gather,"
+        "seconds_direct,map_bytes,hit_point_bytes,peak_rss_mib,radius_min,radius_mean,radius_max,"
+        "mse,mse_unbiased,rmse,relmse,smape,bias,max_error,reference_floor,nonfinite");
+}
+
+TEST(Records, WhatDoesNotApplyIsEmpty) {
+    RunIdentity identity;
+    identity.settings.method.integrator = "path";
+    RunState state;
+    const Record path{identity, state, "total", std::nullopt, 0, 1.0};
+    for (const char* column :
+         {"mode", "schedule", "alpha", "k", "radius_rule", "radius_initial", "max_radius", "kernel", "direct",
+          "direct_samples", "photons_per_pass", "paths_emitted", "photons_stored", "photons_gathered", "map_bytes",
+          "radius_mean", "mse", "mse_unbiased", "reference_floor"})
+        EXPECT_EQ(cell(path, column), "") << column;
+    EXPECT_EQ(cell(path, "max_depth"), "-1");
+    EXPECT_EQ(cell(path, "nonfinite"), "0");
+
+    identity.settings.method.integrator = "photonmapper";
+    identity.settings.method.mode = GatherMode::Nearest;
+    state.initial_radius = 0.25;
+    const Record nearest{identity, state, "total", std::nullopt, 0, 1.0};
+    for (const char* column : {"schedule", "alpha", "radius_rule", "radius_initial"})
+        EXPECT_EQ(cell(nearest, column), "") << column;
+    EXPECT_EQ(cell(nearest, "k"), "120");
+    EXPECT_EQ(cell(nearest, "max_radius"), "0.25");
+    EXPECT_EQ(cell(nearest, "paths_emitted"), "0");
+}
+
+TEST(Records, NumbersReadBackTheSame) {
+    RunIdentity identity;
+    RunState state;
+    ErrorMetrics errors;
+    errors.mse = 0.1 + 0.2;
+    errors.mse_unbiased = -1.0 / 3.0 * 1e-17;
+    const Record record{identity, state, "total", errors, 0, 1.0};
+    EXPECT_EQ(std::stod(cell(record, "mse")), errors.mse);
+    EXPECT_EQ(std::stod(cell(record, "mse_unbiased")), *errors.mse_unbiased);
+}
+
+TEST(Records, TextIsQuotedAsRfc4180Says) {
+    EXPECT_EQ(csv_quoted("plain"), "plain");
+    EXPECT_EQ(csv_quoted("a,b"), "\"a,b\"");
+    EXPECT_EQ(csv_quoted("say \"b\""), "\"say \"\"b\"\"\"");
+    EXPECT_EQ(csv_quoted("two\nlines"), "\"two\nlines\"");
+}
+
+TEST(Records, NonFinitePixelsAreCountedAndLocated) {
+    const TestFolder folder;
+    Image image{3, 2, {}};
+    for (const std::string_view name : {emission_layer, direct_layer, gathered_layer})
+        image.layers.push_back({std::string(name), std::vector<Color>(6, Color(1.0f))});
+    image.layers[2].pixels[4].y = std::numeric_limits<float>::quiet_NaN();
+    Recorder recorder({}, nullptr, folder / "iterations.csv");
+    RunState state;
+    state.pass = 7;
+    recorder.record(state, image);
+    EXPECT_EQ(recorder.nonfinite_pixels(), 1u);
+    ASSERT_EQ(recorder.first_nonfinite_pixels().size(), 2u);
+    const NonfinitePixel& first = recorder.first_nonfinite_pixels()[0];
+    EXPECT_EQ(first.pass, 7u);
+    EXPECT_EQ(first.component, "total");
+    EXPECT_EQ(first.x, 1);
+    EXPECT_EQ(first.y, 1);
+    EXPECT_EQ(recorder.first_nonfinite_pixels()[1].component, "gathered");
+}
+
+Image uniform_image(float emission, float direct, float gathered) {
+    Image image{1, 1, {}};
+    image.layers.push_back({std::string(emission_layer), {Color(emission)}});
+    image.layers.push_back({std::string(direct_layer), {Color(direct)}});
+    image.layers.push_back({std::string(gathered_layer), {Color(gathered)}});
+    return image;
+}
+
+TEST(Judgement, GatheredIsJudgedWithDirectWhenPhotonsCarryIt) {
+    Reference reference;
+    reference.half_a = uniform_image(1.0f, 2.0f, 3.0f);
+    reference.half_b = reference.half_a;
+    const Image image = uniform_image(1.0f, 0.0f, 5.5f);
+    EXPECT_DOUBLE_EQ(judge(image, reference, "gathered", true)->mse, 0.25);
+    EXPECT_FALSE(judge(image, reference, "direct", true).has_value());
+    EXPECT_DOUBLE_EQ(judge(image, reference, "gathered", false)->mse, 6.25);
+    EXPECT_DOUBLE_EQ(judge(image, reference, "direct", false)->mse, 4.0);
+    EXPECT_DOUBLE_EQ(judge(image, reference, "total", true)->mse, 0.25);
+}
+
+TEST(Judgement, HalvesRemoveTheReferencesNoise) {
+    Reference reference;
+    reference.half_a = uniform_image(0.0f, 0.0f, 4.0f);
+    reference.half_b = uniform_image(0.0f, 0.0f, 2.0f);
+    const auto errors = judge(uniform_image(0.0f, 0.0f, 3.5f), reference, "total", false);
+    ASSERT_TRUE(errors.has_value());
+    EXPECT_DOUBLE_EQ(errors->mse, 0.25);
+    EXPECT_DOUBLE_EQ(errors->mse_unbiased.value(), -0.75);
+    EXPECT_DOUBLE_EQ(errors->reference_floor.value(), 1.0);
+}
+
+}  // namespace
+}  // namespace photonlab

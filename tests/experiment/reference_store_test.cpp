@@ -1,0 +1,140 @@
+#include "experiment/reference_store.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "image/exr.h"
+#include "test_folder.h"
+
+namespace photonlab {
+namespace {
+
+class ReferenceStore : public ::testing::Test {
+protected:
+    ReferenceStore() : scene_(build_scene(load_scene_file(folder_.write("scene.xml", two_walls_scene)))) {}
+
+    ReferenceSettings settings(std::uint64_t samples) {
+        ReferenceSettings settings;
+        settings.scene_file = folder_ / "scene.xml";
+        settings.samples = samples;
+        settings.max_depth = scene_.max_depth;
+        return settings;
+    }
+    ReferenceSubject subject() { return {scene_.hash, scene_.camera.width, scene_.camera.height, 1, scene_.max_depth}; }
+
+    TestFolder folder_;
+    Scene scene_;
+};
+
+void expect_near(const Image& a, const Image& b) {
+    const std::vector<ColorD> x = total(a);
+    const std::vector<ColorD> y = total(b);
+    ASSERT_EQ(x.size(), y.size());
+    for (std::size_t i = 0; i < x.size(); ++i)
+        for (int channel = 0; channel < 3; ++channel)
+            EXPECT_NEAR(x[i][channel], y[i][channel], 1e-5 * (std::abs(y[i][channel]) + 1e-3));
+}
+
+TEST_F(ReferenceStore, ResumedIsTheSameAsUninterrupted) {
+    add_reference_samples(scene_, settings(12), folder_ / "whole");
+    add_reference_samples(scene_, settings(5), folder_ / "parts");
+    const Json json = add_reference_samples(scene_, settings(7), folder_ / "parts");
+    EXPECT_EQ(json.at("samples_per_half"), 12u);
+    const Reference whole = load_reference(folder_ / "whole", subject());
+    const Reference parts = load_reference(folder_ / "parts", subject());
+    EXPECT_EQ(whole.key, parts.key);
+    expect_near(parts.half_a, whole.half_a);
+    expect_near(parts.half_b, whole.half_b);
+}
+
+TEST_F(ReferenceStore, HalvesAreIndependent) {
+    const Json json = add_reference_samples(scene_, settings(4), folder_ / "reference");
+    const Reference reference = load_reference(folder_ / "reference", subject());
+    EXPECT_NE(reference.half_a.find(gathered_layer)->front(), reference.half_b.find(gathered_layer)->front());
+    EXPECT_GT(json.at("floor_mse").at("gathered").get<double>(), 0.0);
+    EXPECT_EQ(json.at("floor_mse").at("emission").get<double>(), 0.0);
+    EXPECT_EQ(reference.floor_mse, json.at("floor_mse").at("total").get<double>());
+}
+
+TEST_F(ReferenceStore, SaysWhatDiffersWhenItIsOfSomethingElse) {
+    add_reference_samples(scene_, settings(1), folder_ / "reference");
+    ReferenceSubject other = subject();
+    other.max_depth = 7;
+    other.samples_per_pixel = 4;
+    const std::string expected =
+        (folder_ / "reference").string() +
+        ": this is a reference of something else: samples_per_pixel is 1 in the reference and 4 here, "
+        "max_depth is 5 in the reference and 7 here";
+    EXPECT_EQ(message_of([&] { check_reference(folder_ / "reference", other); }), expected);
+    EXPECT_EQ(message_of([&] { load_reference(folder_ / "reference", other); }), expected);
+}
+
+TEST_F(ReferenceStore, AddsNothingToAReferenceOfSomethingElseOrOfAnotherSeed) {
+    add_reference_samples(scene_, settings(1), folder_ / "reference");
+    ReferenceSettings other = settings(1);
+    other.max_depth = 7;
+    EXPECT_NE(message_of([&] {
+                  add_reference_samples(scene_, other, folder_ / "reference");
+              }).find("half_a.exr: this is a half of another reference"),
+              std::string::npos);
+    other = settings(1);
+    other.seed = 2;
+    EXPECT_NE(message_of([&] {
+                  add_reference_samples(scene_, other, folder_ / "reference");
+              }).find("was made with seed 1; it cannot be continued with seed 2"),
+              std::string::npos);
+}
+
+TEST_F(ReferenceStore, AnInterruptedSaveIsNoticedAndRepaired) {
+    add_reference_samples(scene_, settings(4), folder_ / "whole");
+    add_reference_samples(scene_, settings(3), folder_ / "longer");
+    add_reference_samples(scene_, settings(2), folder_ / "torn");
+    // As if the program had been stopped after half_a was replaced and before half_b and reference.json were.
+    std::filesystem::copy_file(folder_ / "longer/half_a.exr", folder_ / "torn/half_a.exr",
+                               std::filesystem::copy_options::overwrite_existing);
+    EXPECT_NE(message_of([&] {
+                  load_reference(folder_ / "torn", subject());
+              }).find("half_a.exr: is not the file that reference.json was written for"),
+              std::string::npos);
+    EXPECT_EQ(add_reference_samples(scene_, settings(1), folder_ / "torn").at("samples_per_half"), 4u);
+    const Reference repaired = load_reference(folder_ / "torn", subject());
+    const Reference whole = load_reference(folder_ / "whole", subject());
+    expect_near(repaired.half_a, whole.half_a);
+    expect_near(repaired.half_b, whole.half_b);
+}
+
+TEST_F(ReferenceStore, AnImageOfAnotherRendererServesAsAReference) {
+    const Image foreign{12, 8, {{"total", std::vector<Color>(96, Color(0.5f))}}};
+    write_exr(folder_ / "foreign.exr", foreign);
+    const Reference reference = load_reference(folder_ / "foreign.exr", subject());
+    EXPECT_FALSE(reference.floor_mse.has_value());
+    Image image{12, 8, {}};
+    for (const std::string_view name : {emission_layer, direct_layer, gathered_layer})
+        image.layers.push_back({std::string(name), std::vector<Color>(96, Color(0.25f))});
+    const auto errors = judge(image, reference, "total", false);
+    ASSERT_TRUE(errors.has_value());
+    EXPECT_DOUBLE_EQ(errors->rmse, 0.25);
+    EXPECT_FALSE(errors->mse_unbiased.has_value());
+    EXPECT_FALSE(errors->reference_floor.has_value());
+    EXPECT_FALSE(judge(image, reference, "gathered", false).has_value());
+
+    ReferenceSubject larger = subject();
+    larger.width = 13;
+    EXPECT_EQ(message_of([&] { load_reference(folder_ / "foreign.exr", larger); }),
+              (folder_ / "foreign.exr").string() + ": this reference is 12x8, the image 13x8");
+}
+
+TEST_F(ReferenceStore, AFolderWithoutOneIsRefused) {
+    EXPECT_NE(message_of([&] { load_reference(folder_.path(), subject()); }).find("this is no reference"),
+              std::string::npos);
+    folder_.write("bad/reference.json", "{\"schema\": 1}");
+    EXPECT_NE(message_of([&] { load_reference(folder_ / "bad", subject()); }).find("this is no reference"),
+              std::string::npos);
+    folder_.write("worse/reference.json", "not json");
+    EXPECT_NE(message_of([&] { load_reference(folder_ / "worse", subject()); }).find("this is no reference"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace photonlab
