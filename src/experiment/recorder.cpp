@@ -121,7 +121,10 @@ const std::vector<Column>& columns() {
 
 std::string csv_header() {
     std::string line;
-    for (const Column& column : columns()) line += (line.empty() ? "" : ",") + std::string(column.name);
+    for (const Column& column : columns()) {
+        if (!line.empty()) line += ',';
+        line += column.name;
+    }
     return line;
 }
 

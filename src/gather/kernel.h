@@ -18,15 +18,22 @@ enum class Kernel { Disc, Cone, Epanechnikov, Biweight };
 inline constexpr std::array kernel_names{
     ChoiceName<Kernel>{Kernel::Disc, "disc"}, ChoiceName<Kernel>{Kernel::Cone, "cone"},
     ChoiceName<Kernel>{Kernel::Epanechnikov, "epanechnikov"}, ChoiceName<Kernel>{Kernel::Biweight, "biweight"}};
-constexpr const auto& choice_names(Kernel) { return kernel_names; }
+constexpr const auto& choice_names(Kernel) {
+    return kernel_names;
+}
 
-/// The kernel's value times pi r^2, at the squared relative distance s^2 = d^2 / r^2 in [0, 1]: 1 for the constant disc.
+/// The kernel's value times pi r^2, at the squared relative distance s^2 = d^2 / r^2 in [0, 1]: 1 for the constant
+/// disc.
 inline double kernel_weight(Kernel kernel, double s_squared) {
     switch (kernel) {
-        case Kernel::Disc: return 1.0;
-        case Kernel::Cone: return 3.0 * (1.0 - std::sqrt(s_squared));
-        case Kernel::Epanechnikov: return 2.0 * (1.0 - s_squared);
-        case Kernel::Biweight: return 3.0 * (1.0 - s_squared) * (1.0 - s_squared);
+        case Kernel::Disc:
+            return 1.0;
+        case Kernel::Cone:
+            return 3.0 * (1.0 - std::sqrt(s_squared));
+        case Kernel::Epanechnikov:
+            return 2.0 * (1.0 - s_squared);
+        case Kernel::Biweight:
+            return 3.0 * (1.0 - s_squared) * (1.0 - s_squared);
     }
     return 0.0;
 }

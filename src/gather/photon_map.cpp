@@ -38,7 +38,7 @@ std::vector<SortKey> morton_keys(const std::vector<Photon>& photons) {
             lower[axis] = std::min(lower[axis], photon.position[axis]);
             upper[axis] = std::max(upper[axis], photon.position[axis]);
         }
-    constexpr double cells = 2097151.0;    // 2^21 - 1
+    constexpr double cells = 2097151.0;  // 2^21 - 1
     std::array<double, 3> scale{};
     for (int axis = 0; axis < 3; ++axis) {
         const double extent = static_cast<double>(upper[axis]) - lower[axis];
@@ -94,18 +94,19 @@ public:
           position_(position),
           normal_(normal),
           k_(k),
-          ordered_(k <= 128),
+          ordered_(k <= 256),
           squared_radius_(max_squared_radius),
           bound_(pruning_bound(max_squared_radius)),
           neighbours_(neighbours) {
         neighbours_.clear();
     }
 
-    bool full() const override { return true; }    // the maximum radius bounds the search from the start
+    bool full() const override { return true; }  // the maximum radius bounds the search from the start
     float worstDist() const override { return bound_; }
     void addPoint(float, std::size_t index) override {
         const Photon& photon = photons_[index];
-        const Neighbour neighbour{squared_distance_between(photon.position, position_), static_cast<std::uint32_t>(index)};
+        const Neighbour neighbour{squared_distance_between(photon.position, position_),
+                                  static_cast<std::uint32_t>(index)};
         if (neighbour.squared_distance > squared_radius_ || !is_accepted(photon, normal_)) return;
         if (neighbours_.size() == k_) {
             if (!(neighbour < farthest())) return;
@@ -137,7 +138,7 @@ private:
     const Vector normal_;
     const std::size_t k_;
     const bool ordered_;
-    double squared_radius_;    // shrinks to the k-th distance once there are k
+    double squared_radius_;  // shrinks to the k-th distance once there are k
     float bound_;
     std::vector<Neighbour>& neighbours_;
 };
@@ -150,7 +151,8 @@ PhotonMap::PhotonMap(std::vector<Photon> photons) {
     nonfinite_ = given - photons.size();
     if (photons.empty()) return;
     if (photons.size() > 0x7fffffff)
-        throw InputError("photon map: expected fewer than 2^31 photons in one map, got " + std::to_string(photons.size()));
+        throw InputError("photon map: expected fewer than 2^31 photons in one map, got " +
+                         std::to_string(photons.size()));
 
     const std::uint64_t count = photons.size();
     const std::uint64_t given_bytes = photons.capacity() * sizeof(Photon);
@@ -166,9 +168,9 @@ PhotonMap::PhotonMap(std::vector<Photon> photons) {
     index_ = std::make_unique<Index>(positions, flann::KDTreeSingleIndexParams(leaf_max_size, true));
     index_->buildIndex();
 
-    // Three moments compete for the peak: sorting the keys (with the sort's second buffer), copying the photons into their
-    // order, and holding photons and index. FLANN reports its nodes and permutation, in an int that wraps at 2 GB, and not
-    // its pointer to each point nor its reordered copy of the positions.
+    // Three moments compete for the peak: sorting the keys (with the sort's second buffer), copying the photons into
+    // their order, and holding photons and index. FLANN reports its nodes and permutation, in an int that wraps at 2
+    // GB, and not its pointer to each point nor its reordered copy of the positions.
     const std::uint64_t while_sorting = given_bytes + 2 * count * sizeof(SortKey);
     const std::uint64_t while_copying = given_bytes + count * sizeof(SortKey) + photon_bytes;
     const std::uint64_t index_bytes =

@@ -1,12 +1,12 @@
 // The gather layer: photons in a k-d tree of FLANN, asked by position, normal and radius.
 //
-// Photons are sorted along a Morton curve before the build, which makes build and search together 1.4 to 3 times cheaper,
-// and FLANN's own recursive search calls a visitor, so sums happen in place and every query has its own radius. FLANN
-// squares radii, excludes the rim, crashes on an empty set and loses photons of *other* queries when one is NaN: the
-// guards against each are here and nowhere else.
+// Photons are sorted along a Morton curve before the build, which makes build and search together 1.4 to 3 times
+// cheaper, and FLANN's own recursive search calls a visitor, so sums happen in place and every query has its own
+// radius. FLANN squares radii, excludes the rim, crashes on an empty set and loses photons of *other* queries when one
+// is NaN: the guards against each are here and nowhere else.
 //
-// A photon is found when it passes the geometric tests, whatever its BRDF value: distance at most the radius, arrived on
-// the side of the query's normal, its own normal within 60 degrees of that normal.
+// A photon is found when it passes the geometric tests, whatever its BRDF value: distance at most the radius, arrived
+// on the side of the query's normal, its own normal within 60 degrees of that normal.
 //
 // [Jensen 2001, chapter 5: the photon map; Muja & Lowe 2009: FLANN]
 
@@ -36,17 +36,18 @@ inline bool is_accepted(const Photon& photon, const Vector& normal) {
 
 /// Answer of PhotonMap::nearest().
 struct NearestPhotons {
-    std::size_t found = 0;          ///< accepted photons within the maximum radius, at most k
-    double squared_radius = 0.0;    ///< of the disc to divide by: to the k-th photon, or the maximum when fewer were found
+    std::size_t found = 0;        ///< accepted photons within the maximum radius, at most k
+    double squared_radius = 0.0;  ///< of the disc to divide by: the k-th photon's, or the maximum when fewer were found
 };
 
 /// One candidate among the k nearest. Ties in distance go to the lower index, so that the answer does not depend on the
 /// order of the search.
 struct Neighbour {
     double squared_distance;
-    std::uint32_t index;    ///< into the map's photons
+    std::uint32_t index;  ///< into the map's photons
     bool operator<(const Neighbour& other) const {
-        return squared_distance != other.squared_distance ? squared_distance < other.squared_distance : index < other.index;
+        return squared_distance != other.squared_distance ? squared_distance < other.squared_distance
+                                                          : index < other.index;
     }
 };
 
@@ -54,25 +55,26 @@ struct Neighbour {
 /// nothing.
 class PhotonMap {
 public:
-    /// Sorts and indexes the photons; single-threaded, the same result always. Photons whose position is not finite (or so
-    /// far out that float32 cannot square it) are left out and counted.
+    /// Sorts and indexes the photons; single-threaded, the same result always. Photons whose position is not finite (or
+    /// so far out that float32 cannot square it) are left out and counted.
     explicit PhotonMap(std::vector<Photon> photons);
 
-    /// Calls `visit(const Photon&, double squared_distance)` for every accepted photon with distance <= radius (unit box), in
-    /// an order that depends on the photons and the query alone. A radius below minimum_radius is taken as that.
+    /// Calls `visit(const Photon&, double squared_distance)` for every accepted photon with distance <= radius (unit
+    /// box), in an order that depends on the photons and the query alone. A radius below minimum_radius is taken as
+    /// that.
     template <typename Visit>
     void within(const Vector& position, const Vector& normal, double radius, const Visit& visit) const;
 
-    /// Finds the k nearest accepted photons within `max_radius`, then calls `visit(const Photon&, double squared_distance,
-    /// double squared_radius)`, nearest first, for those that carry flux: all of them when fewer than k were found; else all
-    /// but the k-th, which sets the radius and carries none (theory.md, section 4).
+    /// Finds the k nearest accepted photons within `max_radius`, then calls `visit(const Photon&, double
+    /// squared_distance, double squared_radius)`, nearest first, for those that carry flux: all of them when fewer than
+    /// k were found; else all but the k-th, which sets the radius and carries none (theory.md, section 4).
     template <typename Visit>
     NearestPhotons nearest(const Vector& position, const Vector& normal, std::size_t k, double max_radius,
                            const Visit& visit) const;
 
-    std::size_t size() const { return photons_.size(); }            ///< photons that can be found
-    std::uint64_t nonfinite() const { return nonfinite_; }          ///< photons left out
-    std::uint64_t bytes() const { return bytes_; }                  ///< most that photons, index and build held at once
+    std::size_t size() const { return photons_.size(); }    ///< photons that can be found
+    std::uint64_t nonfinite() const { return nonfinite_; }  ///< photons left out
+    std::uint64_t bytes() const { return bytes_; }          ///< most that photons, index and build held at once
 
     /// Smallest radius that float32 can still square with room to spare; unit box.
     static constexpr double minimum_radius = 1e-18;
@@ -86,8 +88,8 @@ private:
     void find_nearest(const Vector& position, const Vector& normal, std::size_t k, double max_squared_radius,
                       std::vector<Neighbour>& neighbours) const;
 
-    std::vector<Photon> photons_;      // in Morton order; the index points into it
-    std::unique_ptr<Index> index_;     // none without photons
+    std::vector<Photon> photons_;   // in Morton order; the index points into it
+    std::unique_ptr<Index> index_;  // none without photons
     std::uint64_t nonfinite_ = 0;
     std::uint64_t bytes_ = 0;
 };
@@ -100,8 +102,9 @@ inline double squared_distance_between(const Vector& a, const Vector& b) {
     return (VectorD(a) - VectorD(b)).length2();
 }
 
-/// The bound that FLANN is given: it keeps a point, or enters a cell, when its float d^2 is below. Wider than r^2 by more
-/// than float can err in d^2 and in the sum over a descent, so that nothing at the rim is lost; the exact test follows.
+/// The bound that FLANN is given: it keeps a point, or enters a cell, when its float d^2 is below. Wider than r^2 by
+/// more than float can err in d^2 and in the sum over a descent, so that nothing at the rim is lost; the exact test
+/// follows.
 inline float pruning_bound(double squared_radius) {
     const double floored = std::max(squared_radius, PhotonMap::minimum_radius * PhotonMap::minimum_radius);
     return static_cast<float>(std::min(floored * (1.0 + 1e-5), static_cast<double>(std::numeric_limits<float>::max())));
@@ -111,8 +114,8 @@ inline float pruning_bound(double squared_radius) {
 template <typename Visit>
 class RadiusVisitor : public flann::ResultSet<float> {
 public:
-    RadiusVisitor(const std::vector<Photon>& photons, const Vector& position, const Vector& normal, double squared_radius,
-                  const Visit& visit)
+    RadiusVisitor(const std::vector<Photon>& photons, const Vector& position, const Vector& normal,
+                  double squared_radius, const Visit& visit)
         : photons_(photons),
           position_(position),
           normal_(normal),

@@ -15,7 +15,8 @@ double knaus_zwicker_shrink(double alpha, std::uint64_t pass) {
 }
 
 void require_alpha(double alpha) {
-    if (!(alpha > 0.0 && alpha <= 1.0)) throw InputError(fmt::format("alpha: expected a number in (0, 1], got {}", alpha));
+    if (!(alpha > 0.0 && alpha <= 1.0))
+        throw InputError(fmt::format("alpha: expected a number in (0, 1], got {}", alpha));
 }
 
 }  // namespace photonlab

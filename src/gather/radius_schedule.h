@@ -16,16 +16,19 @@ namespace photonlab {
 
 /// What a hit point accumulates over the passes. Lengths in units of the scene's box.
 struct GatherStatistics {
-    double squared_radius = 0.0;    ///< for the next pass
-    double count = 0.0;             ///< Hachisuka's N: photons kept so far; other schedules: photons seen so far
-    ColorD estimate = ColorD(0.0);  ///< running mean over passes of the pass's own density estimate (theory.md, section 1)
+    double squared_radius = 0.0;  ///< for the next pass
+    double count = 0.0;           ///< Hachisuka's N: photons kept so far; other schedules: photons seen so far
+    ColorD estimate =
+        ColorD(0.0);  ///< running mean over passes of the pass's own density estimate (theory.md, section 1)
 };
 
 enum class ScheduleName { Hachisuka, KnausZwicker };
 
 inline constexpr std::array schedule_names{ChoiceName<ScheduleName>{ScheduleName::Hachisuka, "hachisuka"},
                                            ChoiceName<ScheduleName>{ScheduleName::KnausZwicker, "knaus-zwicker"}};
-constexpr const auto& choice_names(ScheduleName) { return schedule_names; }
+constexpr const auto& choice_names(ScheduleName) {
+    return schedule_names;
+}
 
 /// Factor on the squared radius after a pass in which `found` new photons joined `count` kept ones:
 /// rho = (N + alpha M) / (N + M), and 1 when N + M = 0.

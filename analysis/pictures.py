@@ -1,0 +1,69 @@
+"""Reads the images of a run and its reference, and turns radiance into what a screen shows.
+
+OpenImageIO reads them: Debian has it for Python (python3-openimageio), and a reference may come from any renderer, in any of
+OpenEXR's compressions.
+"""
+
+import numpy
+import OpenImageIO
+
+from records import RecordError
+
+
+def read_channels(file, names):
+    """The named channels of an EXR as an array (height, width, channels) of doubles; None when it lacks one."""
+    image = OpenImageIO.ImageInput.open(str(file))
+    if image is None:
+        raise RecordError(f"{file}: cannot be read as an image: {OpenImageIO.geterror()}")
+    spec = image.spec()
+    # In the file's own type: asked for floats, OpenImageIO would scale integers to [0, 1].
+    pixels = image.read_image(spec.format)
+    error = image.geterror()
+    image.close()
+    if pixels is None or error:
+        raise RecordError(f"{file}: its pixels cannot be read: {error}")
+    if not set(names) <= set(spec.channelnames):
+        return None
+    return pixels[:, :, [spec.channelnames.index(name) for name in names]].astype(numpy.float64)
+
+
+def read_component(file, component, photons_carry_direct=False):
+    """Radiance of a component, "total" or a layer's name, as an array (height, width, 3); None when the file does not have
+    it. Where photons carry direct light, what they gather is judged against direct + gathered."""
+    if component == "total":
+        colour = read_channels(file, ["R", "G", "B"])
+        if colour is None:
+            raise RecordError(f"{file}: has no channels R, G, B")
+        return colour
+    layers = [component]
+    if photons_carry_direct and component == "gathered":
+        layers.append("direct")
+    colours = [read_channels(file, [f"{layer}.{channel}" for channel in "RGB"]) for layer in layers]
+    return None if any(colour is None for colour in colours) else sum(colours)
+
+
+def read_reference(files, component, photons_carry_direct):
+    """The mean of a reference's halves, or the single image; None when there is none or it lacks the component."""
+    halves = [read_component(file, component, photons_carry_direct) for file in files]
+    if not halves or any(half is None for half in halves):
+        return None
+    if len({half.shape for half in halves}) > 1:
+        raise RecordError(f"{files[0]}: differs in size from {files[1]}")
+    return sum(halves) / len(halves)
+
+
+def exposure_for(colour):
+    """The factor that makes all but the brightest 3% of the lit pixels fit into what a screen shows."""
+    brightest = colour.max(axis=2)
+    lit = brightest[numpy.isfinite(brightest) & (brightest > 0)]
+    return 1.0 / numpy.percentile(lit, 97) if lit.size else 1.0
+
+
+def to_srgb(colour, exposure):
+    """Display values in [0, 1] by the transfer function of IEC 61966-2-1. A pixel with a NaN is magenta, as in the
+    program's own PNGs."""
+    shown = colour * exposure
+    clipped = numpy.clip(numpy.nan_to_num(shown, nan=0.0), 0.0, 1.0)
+    display = numpy.where(clipped <= 0.0031308, 12.92 * clipped, 1.055 * clipped ** (1 / 2.4) - 0.055)
+    display[numpy.isnan(shown).any(axis=2)] = [1.0, 0.0, 1.0]
+    return display

@@ -1,0 +1,240 @@
+"""Reads what runs recorded: iterations.csv into checked rows, rows into methods, methods into curves.
+
+A method is a set of settings (integrator, alpha, radius, ...); runs that differ in nothing but their seed are
+repetitions of one method. Passes of one run are cumulative, so a method's spread is taken over its seeds, never over
+the passes of a run. Errors are combined as mean squared errors and rooted last: the root of a mean is what theory
+predicts, and an unbiased MSE may be negative, where no root exists but a mean does.
+
+What is wrong with a file is a RecordError, which names the file and what was expected.
+"""
+
+import json
+import math
+from pathlib import Path
+
+import pandas
+
+SCHEMA = "1"
+COMPONENTS = ["total", "emission", "direct", "gathered"]
+
+# What makes a method, in the order in which a label names it. The seed is not among them.
+SETTINGS = ["integrator", "mode", "schedule", "alpha", "k", "radius_rule", "radius_initial", "max_radius", "kernel",
+            "direct", "direct_samples", "max_depth", "photons_per_pass", "width", "height", "samples_per_pixel",
+            "hit_points", "threads"]
+COUNTS = ["seed", "pass", "nonfinite"]
+NUMBERS = ["seconds", "cpu_seconds", "mse", "mse_unbiased", "rmse", "relmse", "smape", "bias", "max_error",
+           "reference_floor"]
+
+# Every column of the contract. The other ones are carried along as text for whoever wants them.
+COLUMNS = ["schema", "experiment", "run", "scene", *SETTINGS[:-1], "seed", "threads", "pass", "component",
+           "paths_emitted", "photons_stored", "photons_gathered", "seconds", "cpu_seconds", "seconds_trace",
+           "seconds_build", "seconds_gather", "map_bytes", "hit_point_bytes", "peak_rss_mib", "radius_min",
+           "radius_mean", "radius_max", "mse", "mse_unbiased", "rmse", "relmse", "smape", "bias", "max_error",
+           "reference_floor", "nonfinite"]
+
+INTEGRATOR_NAMES = {"photonmapper": "PM", "ppm": "PPM", "path": "path tracing"}
+SETTING_NAMES = {"alpha": "α", "radius_initial": "initial radius", "max_radius": "maximum radius",
+                 "photons_per_pass": "photons a pass", "samples_per_pixel": "samples a pixel"}
+MODE_ORDER = ["radius", "nearest"]
+BARE_SETTINGS = ["integrator", "mode", "schedule", "kernel"]    # their values say what they are
+
+
+class RecordError(Exception):
+    """Records that cannot be used. The message names the file and says what was expected."""
+
+
+def read_records(results):
+    """Rows of RESULTS/iterations.csv: settings as the text they were written in, counts and measurements as numbers
+    (NaN where the file has nothing), and the column `method` with the label of the row's method."""
+    file = Path(results) / "iterations.csv"
+    if not Path(results).is_dir():
+        raise RecordError(f"{results}: is not a folder; expected the results of `photonlab run`")
+    if not file.is_file():
+        raise RecordError(f"{file}: is not there; expected the records of `photonlab run`")
+    try:
+        records = pandas.read_csv(file, dtype=str, keep_default_na=False, index_col=False)
+    except (pandas.errors.ParserError, pandas.errors.EmptyDataError, UnicodeDecodeError) as error:
+        raise RecordError(f"{file}: is not a table in CSV: {error}") from error
+    check(file, records)
+    for column in COUNTS + NUMBERS:
+        records[column] = to_numbers(file, records[column], whole=column in COUNTS)
+    if (records["pass"].isna() | records["seed"].isna()).any():
+        raise RecordError(f"{file}: has rows without pass or seed")
+    refuse_repeated_rows(file, records)
+    records["method"] = method_labels(records)
+    return records
+
+
+def check(file, records):
+    """Throws RecordError unless the columns, the schema and the components are those of the contract."""
+    missing = [column for column in COLUMNS if column not in records.columns]
+    if missing:
+        raise RecordError(f"{file}: lacks the columns {', '.join(missing)}; expected those of schema {SCHEMA}")
+    if records.empty:
+        raise RecordError(f"{file}: has no rows; has a run finished?")
+    cut = records.isna().any(axis=1)    # with every empty field kept as text, only a field that is not there is NaN
+    if cut.any():
+        raise RecordError(f"{place(file, cut)}: has fewer fields than the header")
+    for column, known in [("schema", [SCHEMA]), ("component", COMPONENTS)]:
+        unknown = ~records[column].isin(known)
+        if unknown.any():
+            raise RecordError(f"{place(file, unknown)}: unknown {column} \"{records[column][unknown].iloc[0]}\"; "
+                              f"known here: {', '.join(known)}")
+
+
+def place(file, wrong):
+    """file:line of the first row that is wrong; the header is line 1."""
+    return f"{file}:{wrong.to_numpy().argmax() + 2}"
+
+
+def to_numbers(file, texts, whole):
+    """The column as numbers; NaN where it is empty."""
+    numbers = pandas.to_numeric(texts, errors="coerce")
+    wrong = numbers.isna() & ~texts.str.lower().isin(["", "nan", "-nan"])
+    if whole:
+        wrong |= numbers.notna() & ((numbers < 0) | (numbers % 1 != 0))
+    if wrong.any():
+        expected = "a whole number that is not negative" if whole else "a number"
+        raise RecordError(f"{place(file, wrong)}: {texts.name} is \"{texts[wrong].iloc[0]}\"; expected {expected}")
+    return numbers.astype(float)
+
+
+def refuse_repeated_rows(file, records):
+    repeated = records.duplicated(["scene", *SETTINGS, "seed", "pass", "component"])
+    if repeated.any():
+        row = records[repeated].iloc[0]
+        raise RecordError(f"{place(file, repeated)}: run {row['run']} repeats pass {row['pass']:.0f}, "
+                          f"{row['component']}, of an earlier row with the same settings and seed")
+
+
+def as_number(text):
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
+def setting_text(column, value):
+    """How a label names a setting: "PPM", "α = 0.7", "max_depth = 5"."""
+    if column == "integrator":
+        return INTEGRATOR_NAMES.get(value, value)
+    if column in BARE_SETTINGS:
+        return value
+    number = as_number(value)
+    shown = value if number is None else f"{number:.4g}" if len(value) > 7 else value
+    return f"{SETTING_NAMES.get(column, column.replace('_', ' '))} = {shown}"
+
+
+def method_labels(records):
+    """A label for each row: the integrator, and those settings that take more than one value among the methods of some
+    scene to which they apply. Where that leaves two methods of a scene with one label, what only one of them has is
+    named as well."""
+    methods = records[["scene", *SETTINGS]].drop_duplicates()
+
+    def varying(groups, empty_counts):
+        return {column for _, group in groups for column in SETTINGS
+                if group[column][empty_counts | (group[column] != "")].nunique() > 1}
+
+    def labels(columns):
+        def label(row):
+            return ", ".join(setting_text(column, row[column]) for column in SETTINGS
+                             if column in columns and row[column] != "")
+        return methods.apply(label, axis=1)
+
+    named = {"integrator", "mode"} if methods["mode"].nunique() > 1 else {"integrator"}
+    named |= varying(methods.groupby("scene"), empty_counts=False)
+    # A sweep over given radii is named by the radii; the rule would say the same again.
+    if "radius_initial" in named or "max_radius" in named:
+        named.discard("radius_rule")
+    first = labels(named)
+    clashes = [group for _, group in methods.groupby([methods["scene"], first]) if len(group) > 1]
+    named |= varying(enumerate(clashes), empty_counts=True)
+    methods = methods.assign(method=labels(named))
+    return records.merge(methods, on=["scene", *SETTINGS], how="left")["method"].to_numpy()
+
+
+def methods_in_order(records):
+    """Labels in the order for legends and strips: by integrator as theory goes from PM to PPM, then by settings, as
+    numbers where they are numbers."""
+    def rank(value, order):
+        return (order.index(value) if value in order else len(order), value)
+
+    def key(item):
+        settings = item[1]
+        rest = []
+        for column in SETTINGS[2:]:
+            number = as_number(settings[column])
+            rest.append((0, number, "") if number is not None else (1, 0.0, settings[column]))
+        return (rank(settings["integrator"], list(INTEGRATOR_NAMES)), rank(settings["mode"], MODE_ORDER), rest)
+
+    first_rows = records.drop_duplicates("method").set_index("method")
+    return [label for label, _ in sorted(first_rows.iterrows(), key=key)]
+
+
+def error_column(rows):
+    """`mse_unbiased` where the reference has two halves, so that its own noise drops out; `mse` where it has not."""
+    judged = rows["mse"].notna()
+    return "mse_unbiased" if judged.any() and rows["mse_unbiased"][judged].notna().all() else "mse"
+
+
+def aggregate_over_seeds(rows, column):
+    """A method's curve: by pass, how many seeds recorded it, the mean of their seconds, and the mean, least and largest
+    of their `column`. `rows` are those of one scene, component and method. A pass that only some of the seeds
+    recorded is left out: a mean over other seeds would be a step in the curve."""
+    passes = rows.groupby("pass")
+    curve = pandas.DataFrame({
+        "seeds": passes.size(),
+        "seconds": passes["seconds"].mean(),
+        # A NaN (no finite pixel was left) stays one: the mean of the other seeds would hide it.
+        "mean": passes[column].agg(lambda values: values.mean(skipna=False)),
+        "least": passes[column].agg(lambda values: values.min(skipna=False)),
+        "largest": passes[column].agg(lambda values: values.max(skipna=False)),
+    })
+    return curve[curve["seeds"] == rows["seed"].nunique()]
+
+
+def root(mean_squared_error):
+    """RMSE of an MSE; NaN for 0 and below, which is less than what the reference can resolve."""
+    return math.sqrt(mean_squared_error) if mean_squared_error > 0 else math.nan
+
+
+def read_run(results, run):
+    """run.json of a run, with what figures need checked."""
+    file = Path(results) / "runs" / run / "run.json"
+    try:
+        record = json.loads(file.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise RecordError(f"{file}: cannot be read: {error.strerror}") from error
+    except ValueError as error:
+        raise RecordError(f"{file}: is not JSON: {error}") from error
+    snapshots = record.get("snapshots") if isinstance(record, dict) else None
+    if not isinstance(snapshots, list) or not all(
+            isinstance(snapshot, dict) and isinstance(snapshot.get("pass"), int) and
+            isinstance(snapshot.get("file"), str) for snapshot in snapshots):
+        raise RecordError(f"{file}: expected \"snapshots\", a list of objects with \"pass\" and \"file\"")
+    reference = record.get("reference")
+    if reference is not None and not isinstance(reference.get("path") if isinstance(reference, dict) else None, str):
+        raise RecordError(f"{file}: expected \"reference\" to be null or an object with \"path\"")
+    return record
+
+
+def reference_files(results, record):
+    """The EXRs of a run's reference: two halves, one image, or none. A relative path is relative to the folder in which
+    the run was started, which run.json records; where that is not there any more (the results came from
+    another machine), to the folder of this one."""
+    if record.get("reference") is None:
+        return []
+    path = record["reference"]["path"]
+    for start in [record.get("working_directory") or ".", ".", results]:
+        found = Path(start) / path
+        if found.is_file():
+            return [found]
+        halves = [found / "half_a.exr", found / "half_b.exr"]
+        if all(half.is_file() for half in halves):
+            return halves
+    return []
+
+
+def file_name(scene):
+    """The scene's name as part of a file's name."""
+    return "".join(letter if letter.isalnum() or letter in "-_." else "-" for letter in scene)

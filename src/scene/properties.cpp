@@ -1,0 +1,135 @@
+#include "scene/properties.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/error.h"
+#include "scene/transform.h"
+
+namespace photonlab {
+
+namespace {
+
+const std::set<std::string> value_tags{"float",    "integer", "boolean", "string", "rgb", "srgb",
+                                       "spectrum", "point",   "vector",  "transform"};
+const std::set<std::string> object_tags{"bsdf",   "emitter", "film",    "integrator", "medium", "phase", "ref",
+                                        "rfilter", "sampler", "sensor", "shape",      "texture"};
+
+double srgb_to_linear(double value) {
+    return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+}
+
+/// "#rrggbb", which is sRGB wherever it stands.
+ColorD parse_hexadecimal(const std::string& text, const std::string& place) {
+    if (text.size() != 7 || text.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
+        throw InputError(place, fmt::format("expected a colour as #rrggbb, got \"{}\"", text));
+    ColorD color;
+    for (unsigned i = 0; i < 3; ++i)
+        color[static_cast<int>(i)] = srgb_to_linear(std::stoi(text.substr(1 + 2 * i, 2), nullptr, 16) / 255.0);
+    return color;
+}
+
+ColorD parse_color(const XmlElement& element) {
+    const std::string& text = element.require("value");
+    if (!text.empty() && text.front() == '#') return parse_hexadecimal(text, element.place);
+    if (text.find(':') != std::string::npos)
+        throw InputError(element.place, "expected linear RGB: spectra by wavelength are not known here");
+    const std::vector<double> numbers = parse_numbers(text, element.place);
+    if (numbers.size() != 1 && numbers.size() != 3)
+        throw InputError(element.place, fmt::format("expected 1 or 3 numbers, got \"{}\"", text));
+    const auto channel = [&](std::size_t i) {
+        const double value = numbers[numbers.size() == 1 ? 0 : i];
+        return element.tag == "srgb" ? srgb_to_linear(value) : value;
+    };
+    return {channel(0), channel(1), channel(2)};
+}
+
+}  // namespace
+
+Properties::Properties(const XmlElement& plugin) : plugin_(plugin) {
+    for (const XmlElement& child : plugin.children) {
+        if (object_tags.count(child.tag)) {
+            objects_.push_back(&child);
+        } else if (value_tags.count(child.tag)) {
+            const std::string& name = child.require("name");
+            if (!properties_.emplace(name, &child).second)
+                throw InputError(child.place, fmt::format("property \"{}\" stands twice", name));
+        } else {
+            throw InputError(child.place, fmt::format("unknown element <{}>; known here: {}, {}", child.tag,
+                                                      fmt::join(value_tags, ", "), fmt::join(object_tags, ", ")));
+        }
+    }
+}
+
+const XmlElement* Properties::take(const std::string& name, const std::set<std::string>& tags) {
+    asked_.insert(name);
+    const auto found = properties_.find(name);
+    if (found == properties_.end()) return nullptr;
+    if (!tags.count(found->second->tag))
+        throw InputError(found->second->place, fmt::format("property \"{}\": expected <{}>, got <{}>", name,
+                                                           fmt::join(tags, "> or <"), found->second->tag));
+    return found->second;
+}
+
+std::optional<double> Properties::number(const std::string& name) {
+    const XmlElement* element = take(name, {"float", "integer"});
+    if (!element) return std::nullopt;
+    return parse_number(element->require("value"), element->place);
+}
+
+std::optional<long> Properties::integer(const std::string& name) {
+    const XmlElement* element = take(name, {"integer"});
+    if (!element) return std::nullopt;
+    return parse_integer(element->require("value"), element->place);
+}
+
+std::optional<bool> Properties::boolean(const std::string& name) {
+    const XmlElement* element = take(name, {"boolean"});
+    if (!element) return std::nullopt;
+    return parse_boolean(element->require("value"), element->place);
+}
+
+std::optional<std::string> Properties::text(const std::string& name) {
+    const XmlElement* element = take(name, {"string"});
+    if (!element) return std::nullopt;
+    return element->require("value");
+}
+
+std::optional<ColorD> Properties::color(const std::string& name) {
+    const XmlElement* element = take(name, {"float", "rgb", "spectrum", "srgb"});
+    if (!element) return std::nullopt;
+    return parse_color(*element);
+}
+
+std::optional<VectorD> Properties::vector(const std::string& name) {
+    const XmlElement* element = take(name, {"point", "vector"});
+    if (!element) return std::nullopt;
+    return parse_vector(*element);
+}
+
+std::optional<Matrix> Properties::transform(const std::string& name) {
+    const XmlElement* element = take(name, {"transform"});
+    if (!element) return std::nullopt;
+    return parse_transform(*element);
+}
+
+void Properties::require_all_known() const {
+    for (const auto& [name, element] : properties_)
+        if (!asked_.count(name))
+            throw InputError(element->place, fmt::format("unknown property \"{}\" of {} \"{}\"; known here: {}", name,
+                                                         plugin_.tag, plugin_.attribute("type"), fmt::join(asked_, ", ")));
+}
+
+std::vector<std::string> Properties::unknown() const {
+    std::vector<std::string> names;
+    for (const auto& [name, element] : properties_)
+        if (!asked_.count(name)) names.push_back(name);
+    return names;
+}
+
+const std::string& Properties::place_of(const std::string& name) const {
+    const auto found = properties_.find(name);
+    return found == properties_.end() ? plugin_.place : found->second->place;
+}
+
+}  // namespace photonlab

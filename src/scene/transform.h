@@ -1,0 +1,28 @@
+// Mitsuba's <transform>: elements applied in the order in which they stand.
+
+#pragma once
+
+#include "core/math.h"
+#include "scene/xml_reader.h"
+
+namespace photonlab {
+
+/// The transform from local to world, in Imath's row-vector convention: p' = p * M. Throws InputError.
+Matrix parse_transform(const XmlElement& element);
+
+/// A vector's or point's three numbers, from `value` or from x, y, z (each `missing` when it is not there).
+VectorD parse_vector(const XmlElement& element, double missing = 0.0);
+
+VectorD transform_point(const Matrix& matrix, const VectorD& point);
+VectorD transform_direction(const Matrix& matrix, const VectorD& direction);
+
+/// A unit normal, by the inverse transpose.
+VectorD transform_normal(const Matrix& matrix, const VectorD& normal);
+
+/// Determinant of the 3 x 3 part: negative for a mirroring.
+double handedness(const Matrix& matrix);
+
+/// The factor by which the matrix scales every length; InputError at `place` when directions are scaled differently.
+double uniform_scale(const Matrix& matrix, const std::string& place);
+
+}  // namespace photonlab

@@ -1,0 +1,254 @@
+#include "scene/xml_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <pugixml.hpp>
+#include <set>
+#include <sstream>
+
+#include "core/error.h"
+
+namespace photonlab {
+
+namespace {
+
+constexpr int include_limit = 15;                  // nested files, as in Mitsuba
+constexpr std::size_t element_limit = 1'000'000;   // in all files together
+constexpr std::uintmax_t size_limit = std::uintmax_t{2} << 30;
+
+/// Offsets at which lines start, to turn pugixml's byte offsets into line numbers.
+class LineNumbers {
+public:
+    explicit LineNumbers(std::string_view text) {
+        for (std::size_t i = 0; i < text.size(); ++i)
+            if (text[i] == '\n') ends_.push_back(i);
+    }
+    std::size_t at(std::ptrdiff_t offset) const {
+        const auto found = std::lower_bound(ends_.begin(), ends_.end(), static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, offset)));
+        return static_cast<std::size_t>(found - ends_.begin()) + 1;
+    }
+
+private:
+    std::vector<std::size_t> ends_;
+};
+
+/// "toWorld" to "to_world": the names of Mitsuba 0.6 in the spelling of Mitsuba 2 and 3.
+std::string to_snake_case(std::string_view name) {
+    std::string result;
+    for (const char c : name) {
+        if (std::isupper(static_cast<unsigned char>(c))) {
+            if (!result.empty() && result.back() != '_') result += '_';
+            result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        } else {
+            result += c;
+        }
+    }
+    return result;
+}
+
+bool is_name_character(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+
+class Reader {
+public:
+    Reader(const std::map<std::string, std::string>& parameters, std::string& bytes_read)
+        : parameters_(parameters), bytes_read_(bytes_read) {}
+
+    XmlElement read_file(const std::filesystem::path& file, const std::string& from) {
+        std::error_code ignored;
+        const std::filesystem::path canonical = std::filesystem::weakly_canonical(file, ignored);
+        if (std::find(open_files_.begin(), open_files_.end(), canonical) != open_files_.end())
+            throw InputError(from, fmt::format("\"{}\" includes itself", file.string()));
+        if (open_files_.size() >= include_limit)
+            throw InputError(from, fmt::format("expected at most {} nested includes", include_limit));
+        open_files_.push_back(canonical);
+
+        const std::string text = read_whole_file(file, from);
+        bytes_read_ += text;
+        const LineNumbers lines(text);
+        pugi::xml_document document;
+        const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size());
+        if (!parsed)
+            throw InputError(fmt::format("{}:{}", file.string(), lines.at(parsed.offset)),
+                             fmt::format("not well-formed XML: {}", parsed.description()));
+        const pugi::xml_node root = document.document_element();
+        if (std::string_view(root.name()) != "scene")
+            throw InputError(fmt::format("{}:{}", file.string(), lines.at(root.offset_debug())),
+                             fmt::format("expected <scene>, got <{}>", root.name()));
+        XmlElement scene = convert(root, file, lines);
+        open_files_.pop_back();
+        return scene;
+    }
+
+    /// Parameters given from outside must be names of the file.
+    void require_all_used(const std::filesystem::path& file) const {
+        for (const auto& [name, value] : parameters_)
+            if (!used_.count(name)) throw InputError(file.string(), fmt::format("no parameter ${} in this scene", name));
+    }
+
+private:
+    XmlElement convert(const pugi::xml_node& node, const std::filesystem::path& file, const LineNumbers& lines) {
+        if (++elements_ > element_limit)
+            throw InputError(file.string(), fmt::format("expected at most {} elements", element_limit));
+        XmlElement element;
+        element.tag = node.name();
+        element.place = fmt::format("{}:{}", file.string(), lines.at(node.offset_debug()));
+        element.folder = file.parent_path();
+        for (const pugi::xml_attribute& attribute : node.attributes()) {
+            const std::string name = attribute.name();
+            std::string value = replace_names(attribute.value(), element.place);
+            if (name == "name" && element.tag != "default") value = to_snake_case(value);
+            if (!element.attributes.emplace(name, value).second)
+                throw InputError(element.place, fmt::format("attribute \"{}\" stands twice", name));
+        }
+        for (const pugi::xml_node& child : node.children()) {
+            if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata)
+                throw InputError(element.place, fmt::format("unexpected text \"{}\" inside <{}>", child.value(), element.tag));
+            if (child.type() != pugi::node_element) continue;
+            XmlElement converted = convert(child, file, lines);
+            if (converted.tag == "default") {
+                const std::string& name = converted.require("name");
+                const auto given = parameters_.find(name);
+                values_.emplace(name, given != parameters_.end() ? given->second : converted.require("value"));
+                used_.insert(name);
+            } else if (converted.tag == "include") {
+                XmlElement included = read_file(converted.folder / converted.require("filename"), converted.place);
+                for (XmlElement& inner : included.children) element.children.push_back(std::move(inner));
+            } else {
+                element.children.push_back(std::move(converted));
+            }
+        }
+        return element;
+    }
+
+    /// Puts values in for $names; the longest known name wins, as in Mitsuba.
+    std::string replace_names(std::string_view text, const std::string& place) {
+        std::string result;
+        for (std::size_t i = 0; i < text.size();) {
+            if (text[i] != '$') {
+                result += text[i++];
+                continue;
+            }
+            std::size_t end = i + 1;
+            while (end < text.size() && is_name_character(text[end])) ++end;
+            const std::string name(text.substr(i + 1, end - i - 1));
+            std::size_t length = name.size();
+            while (length > 0 && !lookup(name.substr(0, length))) --length;
+            if (length == 0) throw InputError(place, fmt::format("${} has no <default> before it and no value was given", name));
+            result += *lookup(name.substr(0, length));
+            i += 1 + length;
+        }
+        return result;
+    }
+
+    const std::string* lookup(const std::string& name) {
+        if (const auto given = parameters_.find(name); given != parameters_.end()) {
+            used_.insert(name);
+            return &given->second;
+        }
+        const auto found = values_.find(name);
+        return found == values_.end() ? nullptr : &found->second;
+    }
+
+    const std::map<std::string, std::string>& parameters_;
+    std::string& bytes_read_;
+    std::map<std::string, std::string> values_;    // of the <default>s read so far
+    std::set<std::string> used_;
+    std::vector<std::filesystem::path> open_files_;
+    std::size_t elements_ = 0;
+};
+
+std::string_view trim(std::string_view text) {
+    const auto is_space = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
+    while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+    while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+}  // namespace
+
+std::string XmlElement::attribute(std::string_view name) const {
+    const auto found = attributes.find(std::string(name));
+    return found == attributes.end() ? std::string() : found->second;
+}
+
+const std::string& XmlElement::require(std::string_view name) const {
+    const auto found = attributes.find(std::string(name));
+    if (found == attributes.end()) throw InputError(place, fmt::format("<{}> needs an attribute \"{}\"", tag, name));
+    return found->second;
+}
+
+XmlElement read_scene_xml(const std::filesystem::path& file, const std::map<std::string, std::string>& parameters,
+                          std::string& bytes_read) {
+    Reader reader(parameters, bytes_read);
+    XmlElement scene = reader.read_file(file, file.string());
+    reader.require_all_used(file);
+    return scene;
+}
+
+std::string read_whole_file(const std::filesystem::path& file, const std::string& place) {
+    std::error_code failed;
+    const bool regular = std::filesystem::is_regular_file(file, failed);
+    std::ifstream stream(file, std::ios::binary);
+    if (failed || !regular || !stream) {
+        const std::string message = fmt::format("cannot read the file \"{}\"", file.string());
+        throw place == file.string() ? InputError(message) : InputError(place, message);
+    }
+    if (std::filesystem::file_size(file) > size_limit)
+        throw InputError(place, fmt::format("expected \"{}\" to be at most 2 GiB", file.string()));
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return text.str();
+}
+
+double parse_number(std::string_view text, const std::string& place) {
+    std::string_view digits = trim(text);
+    if (!digits.empty() && digits.front() == '+') digits.remove_prefix(1);
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (digits.empty() || error == std::errc::invalid_argument || end != digits.data() + digits.size() ||
+        (error == std::errc() && !std::isfinite(value)))
+        throw InputError(place, fmt::format("expected a finite number, got \"{}\"", text));
+    if (error == std::errc::result_out_of_range) {
+        // Too small is 0 for every purpose here; too large is not a number to render with.
+        const double rough = std::strtod(std::string(digits).c_str(), nullptr);
+        if (!std::isfinite(rough)) throw InputError(place, fmt::format("expected a finite number, got \"{}\"", text));
+        return rough;
+    }
+    return value;
+}
+
+long parse_integer(std::string_view text, const std::string& place) {
+    const std::string_view digits = trim(text);
+    long value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error != std::errc() || digits.empty() || end != digits.data() + digits.size())
+        throw InputError(place, fmt::format("expected a whole number, got \"{}\"", text));
+    return value;
+}
+
+bool parse_boolean(std::string_view text, const std::string& place) {
+    if (text == "true" || text == "True") return true;
+    if (text == "false" || text == "False") return false;
+    throw InputError(place, fmt::format("expected true or false, got \"{}\"", text));
+}
+
+std::vector<double> parse_numbers(std::string_view text, const std::string& place) {
+    std::vector<double> numbers;
+    std::size_t i = 0;
+    const auto is_separator = [](char c) { return c == ',' || std::isspace(static_cast<unsigned char>(c)) != 0; };
+    while (i < text.size()) {
+        while (i < text.size() && is_separator(text[i])) ++i;
+        std::size_t end = i;
+        while (end < text.size() && !is_separator(text[end])) ++end;
+        if (end > i) numbers.push_back(parse_number(text.substr(i, end - i), place));
+        i = end;
+    }
+    return numbers;
+}
+
+}  // namespace photonlab

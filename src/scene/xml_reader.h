@@ -1,0 +1,45 @@
+// The XML of a Mitsuba scene file without its meaning: includes followed, defaults and $names put in, both spellings of
+// names folded into one, and every element knowing the file and line where it stands. What elements mean is in loader.cpp.
+
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace photonlab {
+
+struct XmlElement {
+    std::string tag;                                  ///< as written: "shape", "rgb", ...
+    std::map<std::string, std::string> attributes;    ///< $names replaced; `name` in snake_case ("toWorld" is "to_world")
+    std::vector<XmlElement> children;
+    std::string place;                                ///< "file:line"
+    std::filesystem::path folder;                     ///< of the file it stands in: file names are relative to it
+
+    /// The attribute's value, or "" when there is none.
+    std::string attribute(std::string_view name) const;
+
+    /// The attribute's value; InputError when there is none.
+    const std::string& require(std::string_view name) const;
+};
+
+/// Reads `file` and what it includes. Returns its <scene>, the children of included scenes in place of each <include>,
+/// <default>s removed. `parameters` replace the values of defaults. Every byte read is appended to `bytes_read`.
+XmlElement read_scene_xml(const std::filesystem::path& file, const std::map<std::string, std::string>& parameters,
+                          std::string& bytes_read);
+
+/// Whole file as text; InputError at `place` when it cannot be read or is larger than 2 GiB.
+std::string read_whole_file(const std::filesystem::path& file, const std::string& place);
+
+// Values. Each throws InputError at `place` unless the whole text is one.
+
+double parse_number(std::string_view text, const std::string& place);
+long parse_integer(std::string_view text, const std::string& place);
+bool parse_boolean(std::string_view text, const std::string& place);
+
+/// Numbers separated by white space or commas.
+std::vector<double> parse_numbers(std::string_view text, const std::string& place);
+
+}  // namespace photonlab

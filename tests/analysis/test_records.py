@@ -1,0 +1,234 @@
+"""What records.py makes of iterations.csv, and what it refuses."""
+
+import math
+import tempfile
+import unittest
+from pathlib import Path
+
+import synthetic
+
+import records
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.results = Path(folder.name)
+
+    def read(self, made, **options):
+        synthetic.write_csv(self.results, made, **options)
+        return records.read_records(self.results)
+
+
+def constant(value):
+    return lambda seed, number, component: value
+
+
+class Reading(Folder):
+    def test_numbers_are_numbers_settings_are_text_and_empty_is_nan(self):
+        rows = self.read(synthetic.rows(constant(0.25), seeds=[3], passes=[8], mse_unbiased=""))
+        self.assertEqual(rows["pass"].tolist(), [8.0] * 4)
+        self.assertEqual(rows["mse"].tolist(), [0.25 + 1e-6] * 4)
+        self.assertEqual(rows["alpha"].tolist(), ["0.7"] * 4)
+        self.assertEqual(rows["k"].tolist(), [""] * 4)
+
+    def test_an_empty_measurement_is_nan_and_a_negative_one_is_kept(self):
+        made = synthetic.rows(constant(-1e-9), seeds=[1], passes=[1])
+        made[0]["reference_floor"] = ""
+        rows = self.read(made)
+        self.assertTrue(math.isnan(rows["reference_floor"].iloc[0]))
+        self.assertEqual(rows["mse_unbiased"].tolist(), [-1e-9] * 4)
+
+    def test_columns_may_come_in_another_order_and_more_of_them(self):
+        self.assertEqual(len(self.read(synthetic.rows(constant(1.0)), columns=[*reversed(records.COLUMNS), "new"])), 128)
+
+    def refused(self, *parts):
+        with self.assertRaises(records.RecordError) as caught:
+            records.read_records(self.results)
+        for part in parts:
+            self.assertIn(part, str(caught.exception))
+
+    def test_refuses_a_folder_that_is_not_there(self):
+        self.results = self.results / "none"
+        self.refused("none", "is not a folder")
+
+    def test_refuses_a_folder_without_records(self):
+        self.refused("iterations.csv: is not there", "photonlab run")
+
+    def test_refuses_an_empty_file(self):
+        (self.results / "iterations.csv").write_text("")
+        self.refused("iterations.csv: is not a table in CSV")
+
+    def test_refuses_what_is_not_text(self):
+        (self.results / "iterations.csv").write_bytes(b"\x89PNG\r\n\x1a\n\x00\xff\xfe")
+        self.refused("iterations.csv: ")
+
+    def test_refuses_a_header_without_rows(self):
+        synthetic.write_csv(self.results, [])
+        self.refused("iterations.csv: has no rows")
+
+    def test_names_missing_columns(self):
+        synthetic.write_csv(self.results, synthetic.rows(constant(1.0)),
+                            columns=[column for column in records.COLUMNS if column not in ("mse", "alpha")])
+        self.refused("lacks the columns alpha, mse;", "schema 1")
+
+    def test_refuses_another_schema(self):
+        synthetic.write_csv(self.results, synthetic.rows(constant(1.0), schema="2"))
+        self.refused("iterations.csv:2: unknown schema \"2\"; known here: 1")
+
+    def test_refuses_an_unknown_component(self):
+        made = synthetic.rows(constant(1.0))
+        made[5]["component"] = "caustics"
+        synthetic.write_csv(self.results, made)
+        self.refused("iterations.csv:7: unknown component \"caustics\"", "total, emission, direct, gathered")
+
+    def test_refuses_what_is_not_a_number_and_says_where(self):
+        made = synthetic.rows(constant(1.0))
+        made[2]["rmse"] = "0,5"
+        synthetic.write_csv(self.results, made)
+        self.refused("iterations.csv:4: rmse is \"0,5\"; expected a number")
+
+    def test_refuses_a_pass_that_is_not_whole_or_is_negative(self):
+        for text in ["1.5", "-1"]:
+            made = synthetic.rows(constant(1.0))
+            made[0]["pass"] = text
+            synthetic.write_csv(self.results, made)
+            self.refused(f"iterations.csv:2: pass is \"{text}\"; expected a whole number")
+
+    def test_refuses_a_row_that_was_cut(self):
+        synthetic.write_csv(self.results, synthetic.rows(constant(1.0)))
+        file = self.results / "iterations.csv"
+        file.write_text(file.read_text().rstrip("\n")[:-200])
+        self.refused("iterations.csv:129: has fewer fields than the header")
+
+    def test_refuses_a_row_with_too_many_fields(self):
+        synthetic.write_csv(self.results, synthetic.rows(constant(1.0)))
+        with open(self.results / "iterations.csv", "a") as file:
+            file.write("," * 60 + "\n")
+        self.refused("iterations.csv: is not a table in CSV")
+
+    def test_refuses_a_repeated_row(self):
+        made = synthetic.rows(constant(1.0))
+        synthetic.write_csv(self.results, [*made, made[0]])
+        self.refused("iterations.csv:130: run ppm-seed-1 repeats pass 0, total")
+
+
+class Methods(Folder):
+    def labels(self, *methods):
+        made = []
+        for settings in methods:
+            made += synthetic.rows(constant(1.0), seeds=[1, 2], passes=[1], **settings)
+        return records.methods_in_order(self.read(made))
+
+    def test_one_method_is_named_by_its_integrator(self):
+        self.assertEqual(self.labels({}), ["PPM"])
+
+    def test_seeds_are_repetitions_of_one_method(self):
+        rows = self.read(synthetic.rows(constant(1.0), seeds=[1, 2, 3]))
+        self.assertEqual(set(rows["method"]), {"PPM"})
+
+    def test_a_label_names_what_differs_and_no_more(self):
+        self.assertEqual(self.labels({"alpha": "0.5"}, {"alpha": "0.9"}, synthetic.PM_RADIUS, synthetic.PM_NEAREST),
+                         ["PM, radius", "PM, nearest", "PPM, α = 0.5", "PPM, α = 0.9"])
+
+    def test_numbers_are_ordered_as_numbers(self):
+        self.assertEqual(self.labels({"photons_per_pass": "100000"}, {"photons_per_pass": "9000"}),
+                         ["PPM, photons a pass = 9000", "PPM, photons a pass = 100000"])
+
+    def test_given_radii_are_named_by_the_radius(self):
+        self.assertEqual(self.labels({"radius_rule": "given", "radius_initial": "2"}, {}),
+                         ["PPM, initial radius = 2", "PPM, initial radius = 12.35"])
+
+    def test_radii_that_only_differ_from_scene_to_scene_are_not_named(self):
+        self.assertEqual(self.labels({}, {"scene": "other", "radius_initial": "3"}), ["PPM"])
+
+    def test_methods_that_only_an_empty_setting_tells_apart_get_labels_of_their_own(self):
+        self.assertEqual(self.labels({"max_depth": ""}, {"max_depth": "5"}), ["PPM", "PPM, max depth = 5"])
+
+    def test_integrators_that_are_not_known_here_are_named_as_they_are(self):
+        self.assertEqual(self.labels({}, {"integrator": "sppm"}), ["PPM", "sppm"])
+
+
+class Aggregation(Folder):
+    def curve(self, made, column="mse_unbiased"):
+        rows = self.read(made)
+        return records.aggregate_over_seeds(rows[rows["component"] == "gathered"], column)
+
+    def test_mean_least_and_largest_are_exact(self):
+        curve = self.curve(synthetic.rows(lambda seed, number, component: float(seed * number), seeds=[1, 2, 6],
+                                          passes=[1, 4]))
+        self.assertEqual(curve.index.tolist(), [1, 4])
+        self.assertEqual(curve["seeds"].tolist(), [3, 3])
+        self.assertEqual(curve["mean"].tolist(), [3.0, 12.0])
+        self.assertEqual(curve["least"].tolist(), [1.0, 4.0])
+        self.assertEqual(curve["largest"].tolist(), [6.0, 24.0])
+        self.assertEqual(curve["seconds"].tolist(), [0.26, 1.01])
+
+    def test_errors_of_both_signs_are_averaged_before_the_root(self):
+        curve = self.curve(synthetic.rows(lambda seed, number, component: 3.0 if seed == 1 else -1.0, seeds=[1, 2],
+                                          passes=[1]))
+        self.assertEqual(curve["mean"].tolist(), [1.0])
+        self.assertEqual(curve["least"].tolist(), [-1.0])
+
+    def test_a_pass_that_not_every_seed_recorded_is_left_out(self):
+        made = synthetic.rows(constant(1.0), seeds=[1], passes=[1, 2, 4]) + \
+            synthetic.rows(constant(1.0), seeds=[2], passes=[1, 2])
+        self.assertEqual(self.curve(made).index.tolist(), [1, 2])
+
+    def test_a_seed_without_a_value_is_not_hidden_by_the_others(self):
+        made = synthetic.rows(lambda seed, number, component: math.nan if seed == 2 else 1.0, seeds=[1, 2], passes=[1])
+        self.assertTrue(math.isnan(self.curve(made)["mean"].iloc[0]))
+
+    def test_the_unbiased_error_is_used_where_there_is_one(self):
+        made = synthetic.rows(constant(1.0))
+        self.assertEqual(records.error_column(self.read(made)), "mse_unbiased")
+        for row in made:
+            row["mse_unbiased"] = ""
+        self.assertEqual(records.error_column(self.read(made)), "mse")
+
+    def test_the_root_of_nothing_or_less_is_no_number(self):
+        self.assertEqual(records.root(0.25), 0.5)
+        self.assertTrue(math.isnan(records.root(0.0)))
+        self.assertTrue(math.isnan(records.root(-1.0)))
+        self.assertTrue(math.isnan(records.root(math.nan)))
+
+
+class Runs(Folder):
+    def test_reads_what_a_run_wrote(self):
+        synthetic.write_run(self.results, "r", [1, 64], None)
+        record = records.read_run(self.results, "r")
+        self.assertEqual([snapshot["pass"] for snapshot in record["snapshots"]], [1, 64])
+        self.assertEqual(records.reference_files(self.results, record), [])
+
+    def test_refuses_a_run_that_is_not_there_or_not_json_or_something_else(self):
+        with self.assertRaisesRegex(records.RecordError, "run.json: cannot be read"):
+            records.read_run(self.results, "none")
+        file = synthetic.write_run(self.results, "r", [], None) / "run.json"
+        for text, message in [("{", "run.json: is not JSON"), ("[]", "expected \"snapshots\""),
+                              ('{"snapshots": [{"pass": "1", "file": "x"}]}', "expected \"snapshots\""),
+                              ('{"snapshots": [], "reference": "x"}', "expected \"reference\"")]:
+            file.write_text(text)
+            with self.assertRaisesRegex(records.RecordError, message):
+                records.read_run(self.results, "r")
+
+    def test_a_reference_is_found_from_the_folder_in_which_the_run_was_started(self):
+        start = self.results / "start"
+        (start / "reference/box").mkdir(parents=True)
+        synthetic.write_run(self.results, "r", [], "reference/box", working_directory=str(start))
+        record = records.read_run(self.results, "r")
+        self.assertEqual(records.reference_files(self.results, record), [])
+        for half in ["half_a.exr", "half_b.exr"]:
+            (start / "reference/box" / half).touch()
+        self.assertEqual(records.reference_files(self.results, record),
+                         [start / "reference/box/half_a.exr", start / "reference/box/half_b.exr"])
+
+    def test_a_single_image_is_a_reference_too(self):
+        image = self.results / "other-renderer.exr"
+        image.touch()
+        synthetic.write_run(self.results, "r", [], str(image))
+        self.assertEqual(records.reference_files(self.results, records.read_run(self.results, "r")), [image])
+
+
+if __name__ == "__main__":
+    unittest.main()
