@@ -1,10 +1,10 @@
 """Draws how error falls: RMSE against passes and against seconds, for every scene of an experiment.
 
-A line is the root of the mean, over seeds, of the MSE: of the unbiased one where the reference has two halves, so that the
-reference's own noise drops out (theory: E[(x-A)(x-B)] is the true MSE). Its band goes from the least to the
-largest seed. What comes out at 0 or below is less than the reference can resolve; a logarithmic axis has no place for
-it, so it is marked at the bottom and not dropped. The upper row is the whole image; the lower one the gathered light
-alone, whose slope the Monte Carlo noise of sampled direct light would otherwise hide.
+A line is the root of the mean, over seeds, of the MSE: of the unbiased one where the reference has two halves, so
+that the reference's own noise drops out (E[(x-A)(x-B)] is the true MSE). Its band goes from the least to the largest
+seed. What comes out at 0 or below is less than the reference can resolve; a logarithmic axis has no place for it, so it
+is marked at the bottom and not dropped. The upper row is the whole image; the lower one the gathered light alone, whose
+slope the Monte Carlo noise of sampled direct light would otherwise hide.
 """
 
 import argparse
@@ -40,8 +40,8 @@ def curves_of(rows, labels, column):
 
 
 def vertical_range(curves, floor):
-    """Limits of the RMSE axis: all lines, and the floor where it is near. A band may leave at the bottom: its least seed can
-    come out next to 0 by chance."""
+    """Limits of the RMSE axis: all lines, and the floor where it is near. A band may leave at the bottom: its least
+    seed can come out next to 0 by chance."""
     seen = [records.root(value) for curve in curves.values() for column in ["mean", "largest"]
             for value in curve[column] if value > 0 and math.isfinite(value)]
     if floor and (not seen or floor > min(seen) / FARTHEST_FLOOR):
@@ -98,8 +98,8 @@ def notes(rows, column, floors):
     if column == "mse":
         text.append("The reference has no second half: its own noise is in every value.")
     if floors:
-        text.append("Floor of the reference, below the axis: RMSE " +
-                    ", ".join(f"{style.two_digits(floor)} ({COMPONENT_TITLES[component]})" for component, floor in floors.items()) + ".")
+        hidden = [f"{style.two_digits(floor)} ({COMPONENT_TITLES[component]})" for component, floor in floors.items()]
+        text.append(f"Floor of the reference, below the axis: RMSE {', '.join(hidden)}.")
     if (rows["direct"] == "photons").any():
         text.append("Where photons carry direct light, gathered light is judged against direct + gathered.")
     nonfinite = rows[(rows["component"] == "total") & (rows["nonfinite"] > 0)]

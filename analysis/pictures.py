@@ -1,7 +1,7 @@
 """Reads the images of a run and its reference, and turns radiance into what a screen shows.
 
-OpenImageIO reads them: Debian has it for Python (python3-openimageio), and a reference may come from any renderer, in any of
-OpenEXR's compressions.
+OpenImageIO reads them: Debian has it for Python (python3-openimageio), and a reference may come from any renderer, in
+any of OpenEXR's compressions.
 """
 
 import numpy
@@ -28,8 +28,8 @@ def read_channels(file, names):
 
 
 def read_component(file, component, photons_carry_direct=False):
-    """Radiance of a component, "total" or a layer's name, as an array (height, width, 3); None when the file does not have
-    it. Where photons carry direct light, what they gather is judged against direct + gathered."""
+    """Radiance of a component, "total" or a layer's name, as an array (height, width, 3); None when the file does not
+    have it. Where photons carry direct light, what they gather is judged against direct + gathered."""
     if component == "total":
         colour = read_channels(file, ["R", "G", "B"])
         if colour is None:

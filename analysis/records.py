@@ -8,6 +8,7 @@ predicts, and an unbiased MSE may be negative, where no root exists but a mean d
 What is wrong with a file is a RecordError, which names the file and what was expected.
 """
 
+import csv
 import json
 import math
 from pathlib import Path
@@ -51,10 +52,7 @@ def read_records(results):
         raise RecordError(f"{results}: is not a folder; expected the results of `photonlab run`")
     if not file.is_file():
         raise RecordError(f"{file}: is not there; expected the records of `photonlab run`")
-    try:
-        records = pandas.read_csv(file, dtype=str, keep_default_na=False, index_col=False)
-    except (pandas.errors.ParserError, pandas.errors.EmptyDataError, UnicodeDecodeError) as error:
-        raise RecordError(f"{file}: is not a table in CSV: {error}") from error
+    records = read_table(file)
     check(file, records)
     for column in COUNTS + NUMBERS:
         records[column] = to_numbers(file, records[column], whole=column in COUNTS)
@@ -65,6 +63,22 @@ def read_records(results):
     return records
 
 
+def read_table(file):
+    """The CSV as text. pandas would fill up a row that was cut, so the fields are counted here."""
+    with open(file, newline="", encoding="utf-8") as stream:
+        reader = csv.reader(stream, strict=True)
+        try:
+            header = next(reader, [])
+            rows = []
+            for row in reader:
+                if len(row) != len(header):
+                    raise RecordError(f"{file}:{reader.line_num}: has {len(row)} fields; the header has {len(header)}")
+                rows.append(row)
+        except (csv.Error, UnicodeDecodeError) as error:
+            raise RecordError(f"{file}: is not a table in CSV: {error}") from error
+    return pandas.DataFrame(rows, columns=header, dtype=str)
+
+
 def check(file, records):
     """Throws RecordError unless the columns, the schema and the components are those of the contract."""
     missing = [column for column in COLUMNS if column not in records.columns]
@@ -72,9 +86,6 @@ def check(file, records):
         raise RecordError(f"{file}: lacks the columns {', '.join(missing)}; expected those of schema {SCHEMA}")
     if records.empty:
         raise RecordError(f"{file}: has no rows; has a run finished?")
-    cut = records.isna().any(axis=1)    # with every empty field kept as text, only a field that is not there is NaN
-    if cut.any():
-        raise RecordError(f"{place(file, cut)}: has fewer fields than the header")
     for column, known in [("schema", [SCHEMA]), ("component", COMPONENTS)]:
         unknown = ~records[column].isin(known)
         if unknown.any():
@@ -163,8 +174,11 @@ def methods_in_order(records):
         settings = item[1]
         rest = []
         for column in SETTINGS[2:]:
+            if column == "radius_rule":    # the radius itself orders better
+                continue
             number = as_number(settings[column])
-            rest.append((0, number, "") if number is not None else (1, 0.0, settings[column]))
+            rest.append((0, number, "") if number is not None else (-1 if settings[column] == "" else 1, 0.0,
+                                                                    settings[column]))
         return (rank(settings["integrator"], list(INTEGRATOR_NAMES)), rank(settings["mode"], MODE_ORDER), rest)
 
     first_rows = records.drop_duplicates("method").set_index("method")

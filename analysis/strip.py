@@ -1,9 +1,9 @@
-"""Draws what the numbers of a run look like: for every scene the images of PM, of PPM and of the reference side by side, and
-under each how it differs from the reference.
+"""Draws what the numbers of a run look like: for every scene the images of PM, of PPM and of the reference side by
+side, and under each how it differs from the reference.
 
 Differences keep their sign, so that bias (a region all of one colour) can be told from noise (both colours mixed). They
-share one scale. Under each image are its pass and its RMSE from iterations.csv: unbiased where the reference
-has two halves.
+share one scale. Under each image are its pass and its RMSE from iterations.csv: unbiased where the reference has two
+halves.
 """
 
 import argparse
@@ -17,8 +17,8 @@ try:
     import records
     import style
 except ImportError as error:
-    print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas, matplotlib and OpenImageIO (on Debian: "
-          "/usr/bin/python3 with python3-pandas, python3-matplotlib and python3-openimageio)", file=sys.stderr)
+    print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas, matplotlib and OpenImageIO (on "
+          "Debian: /usr/bin/python3 with python3-pandas, python3-matplotlib and python3-openimageio)", file=sys.stderr)
     sys.exit(2)
 
 COMPONENT_TITLES = {"total": "whole image", "emission": "emission alone", "direct": "direct light alone",
@@ -28,7 +28,7 @@ SMALLEST_CELL = 1.1              # inches; many methods make a wider figure, not
 
 
 def shown_methods(scene_rows, labels, alphas, all_methods):
-    """The first method of each kind (PM by radius, PM by k, PPM, ...), or all, or of PPM those with the given alphas."""
+    """The first method of each kind (PM by radius, PM by k, PPM, ...); or all; or of PPM those with given alphas."""
     first_rows = scene_rows.drop_duplicates("method").set_index("method")
     shown, kinds = [], set()
     for label in labels:
@@ -42,7 +42,7 @@ def shown_methods(scene_rows, labels, alphas, all_methods):
 
 
 def snapshots_of(results, scene_rows, label, seed):
-    """Run, run.json and {pass: file} of a method's run with the given seed (None: the lowest); None without such a run."""
+    """Run, run.json, {pass: file} of a method's run with a given seed (None: the lowest); None without such a run."""
     rows = scene_rows[scene_rows["method"] == label]
     rows = rows[rows["seed"] == (rows["seed"].min() if seed is None else seed)]
     if rows.empty:
@@ -64,7 +64,8 @@ def chosen_pass(passes_of_methods, wanted):
 
 def error_text(scene_rows, run, number, component):
     """ "RMSE 0.012" for the snapshot, from the records."""
-    rows = scene_rows[(scene_rows["run"] == run) & (scene_rows["pass"] == number) & (scene_rows["component"] == component)]
+    rows = scene_rows[(scene_rows["run"] == run) & (scene_rows["pass"] == number) &
+                      (scene_rows["component"] == component)]
     if rows.empty or rows["mse"].isna().all():
         return ""
     value = rows[records.error_column(rows)].iloc[0]
@@ -72,8 +73,8 @@ def error_text(scene_rows, run, number, component):
 
 
 def collect(results, scene, scene_rows, labels, options):
-    """What there is to draw: a list of (label, text below, image, difference or None); the reference or None; the RMSE of
-    its floor (NaN without halves). Says what is left out."""
+    """What there is to draw: a list of (label, text below, image, difference or None); the reference or None; the RMSE
+    of its floor (NaN without halves). Says what is left out."""
     found = {}
     for label in shown_methods(scene_rows, labels, options.alpha, options.all):
         snapshots = snapshots_of(results, scene_rows, label, options.seed)
@@ -88,7 +89,8 @@ def collect(results, scene, scene_rows, labels, options):
     for label, (run, record, files) in found.items():
         number = max(files) if common is None else common
         if number not in files:
-            print(f"{scene}: {label}: no snapshot of pass {number}; there are those of {', '.join(map(str, sorted(files)))}")
+            present = ", ".join(map(str, sorted(files)))
+            print(f"{scene}: {label}: no snapshot of pass {number}; there are those of {present}")
             continue
         rows = scene_rows[scene_rows["run"] == run]
         carried = rows["direct"].iloc[0] == "photons"
@@ -187,18 +189,20 @@ def positive(text):
 def main(arguments):
     parser = argparse.ArgumentParser(
         description=__doc__.split("\n\n")[0], formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog="Writes RESULTS_DIR/figures/strip-SCENE.png and .pdf (strip-SCENE-COMPONENT for a single component).\n\n" +
-        __doc__.split("\n\n", 1)[1])
+        epilog="Writes RESULTS_DIR/figures/strip-SCENE.png and .pdf (strip-SCENE-COMPONENT for a single component)."
+        "\n\n" + __doc__.split("\n\n", 1)[1])
     parser.add_argument("results", metavar="RESULTS_DIR", type=Path,
                         help="folder of an experiment's results: iterations.csv and runs/ are in it")
-    parser.add_argument("--pass", type=int, metavar="N", help="pass to show (default: the last one that all methods have)")
+    parser.add_argument("--pass", type=int, metavar="N",
+                        help="pass to show (default: the last one that all methods have)")
     parser.add_argument("--seed", type=int, metavar="S", help="seed to show (default: each method's lowest)")
     parser.add_argument("--alpha", type=positive, nargs="+", default=[], metavar="A",
                         help="alphas of PPM to show (default: the lowest)")
     parser.add_argument("--all", action="store_true", help="show every method, not the first one of each kind")
-    parser.add_argument("--component", choices=records.COMPONENTS, default="total", help="what to show (default: total)")
+    parser.add_argument("--component", choices=records.COMPONENTS, default="total",
+                        help="what to show (default: total)")
     parser.add_argument("--exposure", type=positive, metavar="E",
-                        help="factor on radiance in the pictures (default: so that 97%% of the lit pixels are below white)")
+                        help="factor on radiance in the pictures (default: 97%% of the lit pixels are below white)")
     options = parser.parse_args(arguments)
     results = options.results
     try:

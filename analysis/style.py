@@ -1,5 +1,5 @@
-"""How every figure looks: made for the column of a paper, for readers who do not see all colours, and for a printer that
-has none. So a method has a colour, a marker and a line of its own, and each alone nearly tells it.
+"""How every figure looks: made for the column of a paper, for readers who do not see all colours, and for a printer
+that has none. So a method has a colour, a marker and a line of its own, and each alone nearly tells it.
 
 Colours: Okabe and Ito 2008, "Color Universal Design", without the yellow, which a white page swallows.
 """
@@ -40,9 +40,9 @@ def kind(row):
 
 
 def method_styles(records, labels):
-    """Line settings by label. Patterns go by kind of method, so that PM and PPM are told apart at a glance. A sweep, more than
-    four methods of one kind, goes from dark to light in their order; all else has 7 colours. With 11 markers no pair
-    comes again before the 78th method."""
+    """Line settings by label. Patterns go by kind of method, so that PM and PPM are told apart at a glance. A sweep,
+    more than four methods of one kind, goes from dark to light in their order; all else has 7 colours. With 11 markers
+    no pair comes again before the 78th method."""
     first_rows = records.drop_duplicates("method").set_index("method")
     kinds = [kind(first_rows.loc[label]) for label in labels]
     single_colours = itertools.cycle(COLOURS)
@@ -55,7 +55,7 @@ def method_styles(records, labels):
 
 
 def marked_places(places, most=9):
-    """Indices of at most `most` of the sorted places, evenly spread on a logarithmic axis, first and last among them."""
+    """Indices of at most `most` of the sorted places, evenly spread on a logarithmic axis, with both ends."""
     if len(places) <= most:
         return list(range(len(places)))
     low, high = math.log(places[0]), math.log(places[-1])
@@ -99,8 +99,8 @@ def short_number(value):
 
 
 def panels_over_legend(rows, columns, handles, caption, panel_height=1.75):
-    """A grid of panels with what all share below it: the legend, then the caption in small print. Laid out in inches, so
-    that nothing overlaps however many entries there are. Returns the figure and its grid of axes."""
+    """A grid of panels with what all share below it: the legend, then the caption in small print. Laid out in inches,
+    so that nothing overlaps however many entries there are. Returns the figure and its grid of axes."""
     legend_columns = 2 if max(len(handle.get_label()) for handle in handles) > 28 else 3
     caption_lines = textwrap.wrap(caption, 104)
     legend = 0.19 * -(-len(handles) // legend_columns) + 0.06
@@ -109,9 +109,10 @@ def panels_over_legend(rows, columns, handles, caption, panel_height=1.75):
     height = rows * (top + panel_height + axis_labels) + below
     figure, grid = pyplot.subplots(rows, columns, figsize=(FULL_WIDTH, height), sharey="row", squeeze=False)
     figure.subplots_adjust(left=left / FULL_WIDTH, right=1 - right / FULL_WIDTH, top=1 - top / height,
-                           bottom=(below + axis_labels) / height, hspace=(top + axis_labels) / panel_height, wspace=0.07)
-    figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(left / FULL_WIDTH, below / height), ncol=legend_columns,
-                  borderaxespad=0, borderpad=0, handlelength=3.2, columnspacing=1.5)
+                           bottom=(below + axis_labels) / height, hspace=(top + axis_labels) / panel_height,
+                           wspace=0.07)
+    figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(left / FULL_WIDTH, below / height),
+                  ncol=legend_columns, borderaxespad=0, borderpad=0, handlelength=3.2, columnspacing=1.5)
     figure.text(left / FULL_WIDTH, (below - legend) / height, "\n".join(caption_lines), fontsize=7.5, color="#333333",
                 va="top", linespacing=1.25)
     return figure, grid
@@ -123,7 +124,7 @@ def two_digits(value):
 
 
 def save(figure, results, name):
-    """Writes RESULTS/figures/NAME.png and .pdf and returns both names. The same records give the same bytes: no date."""
+    """Writes RESULTS/figures/NAME.png and .pdf; returns both names. The same records give the same bytes: no date."""
     folder = results / "figures"
     folder.mkdir(exist_ok=True)
     files = [folder / f"{name}.png", folder / f"{name}.pdf"]

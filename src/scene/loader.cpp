@@ -367,7 +367,7 @@ SceneDescription load_scene_file(const std::filesystem::path& file, const std::m
     SceneDescription scene;
     std::string bytes_read;
     const XmlElement root = read_scene_xml(file, parameters, bytes_read);
-    for (const auto& [name, value] : parameters) bytes_read += "\n" + name + "=" + value;
+    for (const auto& [name, value] : parameters) bytes_read += fmt::format("\n{}={}", name, value);
     Loader(scene, bytes_read).load(root);
 
     const XXH128_hash_t hash = XXH3_128bits(bytes_read.data(), bytes_read.size());

@@ -90,7 +90,7 @@ struct Hit {
     Vector position;
     Vector geometric_normal;    ///< unit, to the shape's outside, whichever side was hit
     Vector shading_normal;      ///< unit, interpolated; on the same side as the geometric normal
-    Imath::V2f texture_coordinate;
+    Imath::V2f texture_coordinate = Imath::V2f(0.0f);
     float distance;
     std::uint32_t shape;
     std::uint32_t primitive;    ///< triangle of a mesh, else 0

@@ -1,6 +1,8 @@
 """A results folder made up from formulas, for testing what reads one: the errors of every row are known exactly."""
 
+import contextlib
 import csv
+import io
 import json
 import sys
 from pathlib import Path
@@ -23,14 +25,15 @@ def rows(mse, seeds=(1, 2, 3, 4), passes=(0, 1, 2, 4, 8, 16, 32, 64), floor=1e-6
     """Rows of one method. `mse(seed, pass, component)` is the unbiased MSE; the biased one is higher by `floor`."""
     made = []
     for seed in seeds:
-        run = "-".join([settings.get("integrator", "ppm"), *(str(value) for value in settings.values()), f"seed-{seed}"])
+        run = "-".join([settings.get("integrator", "ppm"), *map(str, settings.values()), f"seed-{seed}"])
         for number in passes:
             for component in records.COMPONENTS:
                 unbiased = mse(seed, number, component)
                 biased = max(unbiased, 0) + floor
                 made.append({**BASE, **settings, "run": run.replace(" ", ""), "seed": str(seed), "pass": str(number),
                              "component": component, "seconds": repr(0.01 + 0.25 * number), "mse": repr(biased),
-                             "mse_unbiased": repr(unbiased), "rmse": repr(biased ** 0.5), "reference_floor": repr(floor)})
+                             "mse_unbiased": repr(unbiased), "rmse": repr(biased ** 0.5),
+                             "reference_floor": repr(floor)})
     return made
 
 
@@ -38,7 +41,8 @@ def write_csv(results, made, columns=None):
     results = Path(results)
     results.mkdir(parents=True, exist_ok=True)
     with open(results / "iterations.csv", "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, columns or [*records.COLUMNS, "seconds_direct"], restval="", extrasaction="ignore")
+        writer = csv.DictWriter(file, columns or [*records.COLUMNS, "seconds_direct"], restval="",
+                                extrasaction="ignore")
         writer.writeheader()
         writer.writerows(made)
 
@@ -51,3 +55,13 @@ def write_run(results, run, snapshots, reference, working_directory="/nowhere"):
         "reference": reference and {"path": reference},
         "snapshots": [{"pass": number, "file": f"snapshots/pass-{number:06}.exr"} for number in snapshots]}))
     return folder
+
+
+def run(command, *arguments):
+    """Calls `command.main` as the shell would: (exit code, standard output, standard error)."""
+    with contextlib.redirect_stdout(io.StringIO()) as output, contextlib.redirect_stderr(io.StringIO()) as errors:
+        try:
+            code = command.main([str(argument) for argument in arguments])
+        except SystemExit as end:
+            code = end.code
+    return code, output.getvalue(), errors.getvalue()

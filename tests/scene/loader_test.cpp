@@ -1,0 +1,386 @@
+// The loader by example: what public scene files contain is read as Mitsuba reads it, and every mistake in the table below
+// gets exactly the message beside it.
+
+#include "scene/loader.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "core/error.h"
+
+namespace photonlab {
+namespace {
+
+/// A folder of its own for a test's files, removed afterwards.
+class LoaderTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = std::filesystem::temp_directory_path() /
+                  (std::string("photonlab-") + test->test_suite_name() + "-" + test->name());
+        std::filesystem::remove_all(folder_);
+        std::filesystem::create_directories(folder_);
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
+
+    SceneDescription load(const std::string& text, const std::map<std::string, std::string>& parameters = {}) const {
+        write("scene.xml", text);
+        return load_scene_file(folder_ / "scene.xml", parameters);
+    }
+
+    /// Loads `inside` as the inside of a scene that has a sensor already.
+    SceneDescription load_with_sensor(const std::string& inside) const {
+        return load("<scene version='3.0.0'><sensor type='perspective'/>" + inside + "</scene>");
+    }
+
+    /// The message of the error that `text` raises, with the folder taken out.
+    std::string message_of(const std::string& text) const {
+        try {
+            load(text);
+        } catch (const InputError& error) {
+            std::string message = error.what();
+            const std::string prefix = folder_.string() + "/";
+            for (std::size_t at; (at = message.find(prefix)) != std::string::npos;) message.erase(at, prefix.size());
+            return message;
+        }
+        return "no error";
+    }
+
+    std::filesystem::path folder_;
+};
+
+const MeshDescription& mesh_of(const SceneDescription& scene, std::size_t shape = 0) {
+    return std::get<MeshDescription>(scene.shapes.at(shape).geometry);
+}
+
+void expect_near(const VectorD& a, const VectorD& b, double tolerance = 1e-12) {
+    EXPECT_NEAR(a.x, b.x, tolerance);
+    EXPECT_NEAR(a.y, b.y, tolerance);
+    EXPECT_NEAR(a.z, b.z, tolerance);
+}
+
+VectorD normal_of(const MeshDescription& mesh, std::size_t triangle) {
+    const auto& t = mesh.triangles.at(triangle);
+    return (mesh.positions[t.y] - mesh.positions[t.x]).cross(mesh.positions[t.z] - mesh.positions[t.x]).normalized();
+}
+
+TEST_F(LoaderTest, EveryMistakeGetsItsMessage) {
+    const std::string sensor = "<sensor type='perspective'/>";
+    const auto scene = [&](const std::string& inside) { return "<scene version='3.0.0'>\n" + inside + "\n" + sensor + "</scene>"; };
+    const auto shape = [&](const std::string& inside) { return scene("<shape type='rectangle'>\n" + inside + "</shape>"); };
+    const auto camera = [&](const std::string& inside) { return "<scene><sensor type='perspective'>\n" + inside + "</sensor></scene>"; };
+    write("cycle.xml", "<scene><include filename='cycle.xml'/></scene>");
+    write("broken.xml", "<scene>\n\n<shape></scene>");
+    write("no_faces.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    write("bad_index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n");
+    write("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
+    write("short.obj", "v 0 0 0\nv 1 0\n");
+    write("word.obj", "v 0 0 zero\n");
+    write("edge.obj", "v 0 0 0\nv 1 0 0\nf 1 2\n");
+
+    const std::vector<std::pair<std::string, std::string>> table{
+        {"", "scene.xml:1: not well-formed XML: No document element found"},
+        {"<scene>\n<shape>\n</scene>", "scene.xml:3: not well-formed XML: Start-end tags mismatch"},
+        {"<mitsuba/>", "scene.xml:1: expected <scene>, got <mitsuba>"},
+        {"<scene>\n</scene>", "scene.xml:1: expected a <sensor type=\"perspective\"> in the scene"},
+        {scene("<light/>"), "scene.xml:2: unknown element <light> in <scene>; known here: bsdf, default, emitter, include, "
+                            "integrator, sensor, shape"},
+        {scene("words"), "scene.xml:1: unexpected text \"\nwords\n\" inside <scene>"},
+        {scene("<shape type='teapot'/>"), "scene.xml:2: unknown shape \"teapot\"; known here: cube, disk, obj, rectangle, sphere"},
+        {scene("<shape/>"), "scene.xml:2: <shape> needs an attribute \"type\""},
+        {scene("<bsdf type='roughglass'/>"), "scene.xml:2: unknown bsdf \"roughglass\"; known here: diffuse, twosided"},
+        {scene("<emitter type='sky'/>"), "scene.xml:2: unknown emitter \"sky\"; known here: area (in a shape), point (in the scene)"},
+        {scene("<bsdf type='diffuse'>\n<float name='roughness' value='1'/></bsdf>"),
+         "scene.xml:3: unknown property \"roughness\" of bsdf \"diffuse\"; known here: reflectance"},
+        {scene("<bsdf type='diffuse'>\n<rgb name='reflectance' value='1.5'/></bsdf>"),
+         "scene.xml:3: reflectance: expected values in [0, 1], got 1.5 1.5 1.5"},
+        {scene("<bsdf type='diffuse'>\n<rgb name='reflectance' value='-0.1 0 0'/></bsdf>"),
+         "scene.xml:3: reflectance: expected values in [0, 1], got -0.1 0 0"},
+        {scene("<bsdf type='diffuse'>\n<rgb name='reflectance' value='0.1 0.2'/></bsdf>"),
+         "scene.xml:3: expected 1 or 3 numbers, got \"0.1 0.2\""},
+        {scene("<bsdf type='diffuse'>\n<rgb name='reflectance' value='0.1 x 0.2'/></bsdf>"),
+         "scene.xml:3: expected a finite number, got \"x\""},
+        {scene("<bsdf type='diffuse'>\n<rgb name='reflectance' value='nan'/></bsdf>"),
+         "scene.xml:3: expected a finite number, got \"nan\""},
+        {scene("<bsdf type='diffuse'>\n<rgb name='reflectance' value='#12345g'/></bsdf>"),
+         "scene.xml:3: expected a colour as #rrggbb, got \"#12345g\""},
+        {scene("<bsdf type='diffuse'>\n<spectrum name='reflectance' value='400:0.1, 700:0.2'/></bsdf>"),
+         "scene.xml:3: expected linear RGB: spectra by wavelength are not known here"},
+        {scene("<bsdf type='diffuse'>\n<string name='reflectance' value='red'/></bsdf>"),
+         "scene.xml:3: property \"reflectance\": expected <float> or <rgb> or <spectrum> or <srgb>, got <string>"},
+        {scene("<bsdf type='diffuse'>\n<rgb name='reflectance' value='0'/>\n<rgb name='reflectance' value='0'/></bsdf>"),
+         "scene.xml:4: property \"reflectance\" stands twice"},
+        {scene("<bsdf type='diffuse'>\n<rgb value='0'/></bsdf>"), "scene.xml:3: <rgb> needs an attribute \"name\""},
+        {scene("<bsdf type='diffuse'>\n<colour name='reflectance' value='0'/></bsdf>"),
+         "scene.xml:3: unknown element <colour>; known here: boolean, float, integer, point, rgb, spectrum, srgb, string, transform, "
+         "vector, bsdf, emitter, film, integrator, medium, phase, ref, rfilter, sampler, sensor, shape, texture"},
+        {scene("<bsdf type='diffuse'>\n<texture type='bitmap' name='reflectance'/></bsdf>"),
+         "scene.xml:3: diffuse: expected reflectance as a colour, got <texture>"},
+        {scene("<bsdf type='twosided'/>"), "scene.xml:2: twosided: expected one nested bsdf, got 0"},
+        {scene("<bsdf type='twosided'>\n<bsdf type='twosided'><bsdf type='diffuse'/></bsdf></bsdf>"),
+         "scene.xml:3: twosided: expected a one-sided bsdf, got bsdf \"twosided\""},
+        {scene("<bsdf type='diffuse' id='a'/>\n<bsdf type='diffuse' id='a'/>"), "scene.xml:3: id \"a\" stands already at scene.xml:2"},
+        {shape("<ref id='missing'/>"), "scene.xml:3: nothing in this scene has the id \"missing\""},
+        {shape("<ref/>"), "scene.xml:3: <ref> needs an attribute \"id\""},
+        {shape("<bsdf type='diffuse'/>\n<bsdf type='diffuse'/>"), "scene.xml:4: expected one bsdf in a shape, got a second"},
+        {shape("<emitter type='area'/>\n<emitter type='area'/>"), "scene.xml:4: expected one emitter in a shape, got a second"},
+        {shape("<emitter type='point'/>"), "scene.xml:3: unknown emitter \"point\"; known here: area (in a shape), point (in the scene)"},
+        {shape("<emitter type='area'>\n<rgb name='radiance' value='-1'/></emitter>"),
+         "scene.xml:4: radiance: expected values of at least 0, got -1 -1 -1"},
+        {shape("<float name='radius' value='1'/>"),
+         "scene.xml:3: unknown property \"radius\" of shape \"rectangle\"; known here: flip_normals, to_world"},
+        {shape("<boolean name='flip_normals' value='yes'/>"), "scene.xml:3: expected true or false, got \"yes\""},
+        {shape("<transform name='to_world'>\n<skew x='1'/></transform>"),
+         "scene.xml:4: unknown transform <skew>; known here: lookat, matrix, rotate, scale, translate"},
+        {shape("<transform name='to_world'>\n<matrix value='1 2 3'/></transform>"), "scene.xml:4: expected 16 or 9 numbers in <matrix>, got 3"},
+        {shape("<transform name='to_world'>\n<scale value='0'/></transform>"),
+         "scene.xml:3: expected an invertible transform with finite values"},
+        {shape("<transform name='to_world'>\n<rotate angle='90'/></transform>"),
+         "scene.xml:4: <rotate> needs x, y, z or a value of 3 numbers"},
+        {shape("<transform name='to_world'>\n<translate x='1e400'/></transform>"), "scene.xml:4: expected a finite number, got \"1e400\""},
+        {shape("<transform name='to_world'>\n<translate x='1m'/></transform>"), "scene.xml:4: expected a finite number, got \"1m\""},
+        {scene("<shape type='sphere'>\n<float name='radius' value='0'/></shape>"), "scene.xml:3: radius: expected a number above 0, got 0"},
+        {scene("<shape type='sphere'><transform name='to_world'><scale x='2'/></transform></shape>"),
+         "scene.xml:2: expected a to_world that scales all directions alike: this shape must stay round"},
+        {scene("<shape type='obj'/>"), "scene.xml:2: obj: expected a <string name=\"filename\">"},
+        {scene("<shape type='obj'>\n<string name='filename' value='none.obj'/></shape>"),
+         "scene.xml:3: cannot read the file \"none.obj\""},
+        {scene("<shape type='obj'><string name='filename' value='no_faces.obj'/></shape>"), "no_faces.obj: expected at least one face"},
+        {scene("<shape type='obj'><string name='filename' value='bad_index.obj'/></shape>"),
+         "bad_index.obj: a face names vertex 4, but there are 3"},
+        {scene("<shape type='obj'><string name='filename' value='nan.obj'/></shape>"), "nan.obj:2: expected a finite number, got \"nan\""},
+        {scene("<shape type='obj'><string name='filename' value='short.obj'/></shape>"), "short.obj:2: v: expected 3 numbers, got 2"},
+        {scene("<shape type='obj'><string name='filename' value='word.obj'/></shape>"), "word.obj:1: expected a finite number, got \"zero\""},
+        {scene("<shape type='obj'><string name='filename' value='edge.obj'/></shape>"), "edge.obj:3: f: expected at least 3 corners, got 2"},
+        {scene("<include filename='none.xml'/>"), "scene.xml:2: cannot read the file \"none.xml\""},
+        {scene("<include filename='cycle.xml'/>"), "cycle.xml:1: \"cycle.xml\" includes itself"},
+        {scene("<include filename='broken.xml'/>"), "broken.xml:3: not well-formed XML: Start-end tags mismatch"},
+        {shape("<boolean name='flip_normals' value='$flip'/>"), "scene.xml:3: $flip has no <default> before it and no value was given"},
+        {scene("<default name='a'/>"), "scene.xml:2: <default> needs an attribute \"value\""},
+        {"<scene><sensor type='thinlens'/></scene>", "scene.xml:1: unknown sensor \"thinlens\"; known here: perspective"},
+        {camera("<float name='fov' value='180'/>"), "scene.xml:2: fov: expected degrees in (0, 180), got 180"},
+        {camera("<string name='fov_axis' value='z'/><float name='fov' value='40'/>"),
+         "scene.xml:2: unknown fov_axis \"z\"; known here: diagonal, larger, smaller, x, y"},
+        {camera("<float name='principal_point_offset_x' value='0.1'/>"),
+         "scene.xml:2: principal_point_offset_x: expected 0, a shifted image plane is not known here"},
+        {camera("<film type='hdrfilm'>\n<integer name='width' value='0'/></film>"), "scene.xml:3: width: expected 1 to 16384 pixels, got 0"},
+        {camera("<film type='hdrfilm'>\n<integer name='width' value='1.5'/></film>"), "scene.xml:3: expected a whole number, got \"1.5\""},
+        {camera("<film type='hdrfilm'>\n<integer name='crop_width' value='5'/></film>"),
+         "scene.xml:3: crop_width: cropped films are not known here"},
+        {camera("<transform name='to_world'>\n<lookat origin='0,0,0' target='0,0,0' up='0,1,0'/></transform>"),
+         "scene.xml:3: lookat: expected a target away from the origin, and an up that is not the view direction"},
+        {camera("<transform name='to_world'>\n<lookat origin='0,0' target='0,0,1' up='0,1,0'/></transform>"),
+         "scene.xml:3: expected 3 numbers, got \"0,0\""},
+        {scene("<integrator type='path'>\n<integer name='max_depth' value='0'/></integrator>"),
+         "scene.xml:3: max_depth: expected -1 or 1 to 1000000, got 0"},
+    };
+    for (const auto& [text, message] : table) EXPECT_EQ(message_of(text), message) << text;
+}
+
+TEST_F(LoaderTest, AMissingSceneFileIsNamed) {
+    try {
+        load_scene_file(folder_ / "none.xml");
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_EQ(std::string(error.what()), "cannot read the file \"" + (folder_ / "none.xml").string() + "\"");
+    }
+}
+
+TEST_F(LoaderTest, TransformsApplyInTheOrderInWhichTheyStand) {
+    const auto scene = load_with_sensor(
+        "<shape type='rectangle'><transform name='to_world'><scale x='2' y='3'/><rotate y='1' angle='90'/>"
+        "<translate value='10, 20, 30'/></transform></shape>");
+    // (1, 1, 0) scaled is (2, 3, 0), turned by 90 degrees about y is (0, 3, -2).
+    expect_near(mesh_of(scene).positions[2], {10, 23, 28});
+    expect_near(normal_of(mesh_of(scene), 0), {1, 0, 0});
+}
+
+TEST_F(LoaderTest, MatricesAreRowsOfColumnVectorsWithOldExponents) {
+    const auto scene = load_with_sensor(
+        "<shape type='rectangle'><transform name='toWorld'><matrix value='-4.37114e-008 1 4.37114e-008 5 0 -8.74228e-008 2 6 "
+        "1 4.37114e-008 1.91069e-015 7 0 0 0 1'/></transform></shape>");
+    expect_near(mesh_of(scene).positions[2], {1 + 5 - 4.37114e-8, 6 - 8.74228e-8, 8 + 4.37114e-8}, 1e-9);
+}
+
+TEST_F(LoaderTest, LookAtHasXToTheLeftYUpAndZForward) {
+    const auto scene = load("<scene><sensor type='perspective'><transform name='to_world'>"
+                            "<lookat origin='1,2,3' target='1,2,10' up='0,1,0'/></transform></sensor></scene>");
+    const Matrix& m = scene.camera.to_world;
+    expect_near({m[0][0], m[0][1], m[0][2]}, {1, 0, 0});
+    expect_near({m[1][0], m[1][1], m[1][2]}, {0, 1, 0});
+    expect_near({m[2][0], m[2][1], m[2][2]}, {0, 0, 1});
+    expect_near({m[3][0], m[3][1], m[3][2]}, {1, 2, 3});
+}
+
+TEST_F(LoaderTest, MirroringKeepsTheOutsideOutside) {
+    const auto scene = load_with_sensor("<shape type='cube'><transform name='to_world'><scale x='-1'/></transform></shape>"
+                                        "<shape type='cube'/><shape type='cube'><boolean name='flipNormals' value='true'/></shape>");
+    for (std::size_t shape = 0; shape < 3; ++shape)
+        for (std::size_t triangle = 0; triangle < 12; ++triangle) {
+            const MeshDescription& mesh = mesh_of(scene, shape);
+            const double outwards = normal_of(mesh, triangle).dot(mesh.positions[mesh.triangles[triangle].x]);
+            EXPECT_NEAR(outwards, shape == 2 ? -1.0 : 1.0, 1e-12);
+        }
+}
+
+TEST_F(LoaderTest, FieldOfViewFollowsItsAxis) {
+    const auto fov = [&](const std::string& axis) {
+        return load("<scene><sensor type='perspective'><float name='fov' value='60'/><string name='fovAxis' value='" + axis +
+                    "'/><film type='hdrfilm'><integer name='width' value='200'/><integer name='height' value='100'/></film>"
+                    "</sensor></scene>").camera.fov_x;
+    };
+    const double t = std::tan(pi / 6);
+    EXPECT_NEAR(fov("x"), 60.0, 1e-12);
+    EXPECT_NEAR(fov("larger"), 60.0, 1e-12);
+    EXPECT_NEAR(fov("y"), 2 * std::atan(2 * t) * 180 / pi, 1e-12);
+    EXPECT_NEAR(fov("smaller"), 2 * std::atan(2 * t) * 180 / pi, 1e-12);
+    EXPECT_NEAR(fov("diagonal"), 2 * std::atan(2 * t / std::sqrt(5.0)) * 180 / pi, 1e-12);
+}
+
+TEST_F(LoaderTest, WithoutAnAngleTheLensIsFiftyMillimetres) {
+    const auto scene = load("<scene><sensor type='perspective'><film type='hdrfilm'><integer name='width' value='300'/>"
+                            "<integer name='height' value='200'/></film></sensor></scene>");
+    EXPECT_NEAR(scene.camera.fov_x, 2 * std::atan(36.0 / 100.0) * 180 / pi, 1e-9);
+}
+
+TEST_F(LoaderTest, DefaultsAreReplacedByParameters) {
+    const std::string text = "<scene><default name='w' value='12'/><default name='ww' value='34'/><sensor type='perspective'>"
+                             "<film type='hdrfilm'><integer name='width' value='$ww'/><integer name='height' value='$w'/></film>"
+                             "</sensor></scene>";
+    EXPECT_EQ(load(text).camera.width, 34);
+    EXPECT_EQ(load(text).camera.height, 12);
+    EXPECT_EQ(load(text, {{"w", "56"}}).camera.height, 56);
+    EXPECT_NE(load(text).hash, load(text, {{"w", "56"}}).hash);
+    EXPECT_THROW(load(text, {{"v", "1"}}), InputError);
+}
+
+TEST_F(LoaderTest, IncludesAndNestedReferencesAreFollowed) {
+    std::filesystem::create_directories(folder_ / "parts");
+    write("parts/materials.xml", "<scene><include filename='inner.xml'/><bsdf type='twosided' id='wall'><ref id='paint'/></bsdf></scene>");
+    write("parts/inner.xml", "<scene><bsdf type='diffuse' id='paint'><rgb name='reflectance' value='$level'/></bsdf></scene>");
+    const auto scene = load("<scene><default name='level' value='0.25'/><sensor type='perspective'/>"
+                            "<shape type='sphere'><ref name='bsdf' id='wall'/></shape><include filename='parts/materials.xml'/></scene>");
+    const Material& material = scene.materials.at(scene.shapes.at(0).material);
+    EXPECT_TRUE(material.two_sided);
+    EXPECT_FLOAT_EQ(std::get<Diffuse>(material.bsdf).reflectance.x, 0.25f);
+}
+
+TEST_F(LoaderTest, PublicCornellBoxesOpenUnmodified) {
+    // In the manner of the scenes that come with Mitsuba 3 and of public collections: defaults, references before use in a
+    // bsdf, a light with black reflectance, settings for other programs.
+    const auto scene = load(R"(<?xml version="1.0" encoding="utf-8"?>
+<scene version="3.0.0">
+    <default name="spp" value="64"/> <default name="resx" value="256"/> <default name="max_depth" value="6"/>
+    <default name="integrator" value="path"/>
+    <integrator type="$integrator"> <integer name="max_depth" value="$max_depth"/> <boolean name="hide_emitters" value="true"/> </integrator>
+    <sensor type="perspective" id="sensor">
+        <string name="fov_axis" value="smaller"/> <float name="near_clip" value="0.001"/> <float name="far_clip" value="100.0"/>
+        <float name="focus_distance" value="1000"/> <float name="fov" value="39.3077"/>
+        <transform name="to_world"> <lookat origin="0, 0, 4" target="0, 0, 0" up="0, 1, 0"/> </transform>
+        <sampler type="independent"> <integer name="sample_count" value="$spp"/> </sampler>
+        <film type="hdrfilm"> <integer name="width" value="$resx"/> <integer name="height" value="$resx"/>
+            <rfilter type="tent"/> <string name="pixel_format" value="rgb"/> <string name="component_format" value="float32"/> </film>
+    </sensor>
+    <bsdf type="twosided" id="White"><bsdf type="diffuse"><rgb name="reflectance" value="0.725, 0.71, 0.68"/></bsdf></bsdf>
+    <bsdf type="diffuse" id="Light"><rgb name="reflectance" value="0, 0, 0"/></bsdf>
+    <shape type="rectangle" id="Floor"><transform name="to_world">
+        <matrix value="-4.37114e-008 1 4.37114e-008 0 0 -8.74228e-008 2 0 1 4.37114e-008 1.91069e-015 0 0 0 0 1"/></transform>
+        <ref id="White"/></shape>
+    <shape type="rectangle" id="Lamp"><transform name="to_world">
+        <matrix value="0.235 -1.66103e-008 -7.80685e-009 -0.005 -2.05444e-008 3.90343e-009 -0.0893 1.98 2.05444e-008 0.19 8.30516e-009 -0.03 0 0 0 1"/>
+        </transform><ref id="Light"/><emitter type="area"><rgb name="radiance" value="17, 12, 4"/></emitter></shape>
+</scene>)");
+    EXPECT_EQ(scene.max_depth, 6);
+    EXPECT_EQ(scene.camera.width, 256);
+    ASSERT_EQ(scene.shapes.size(), 2u);
+    EXPECT_DOUBLE_EQ(scene.shapes[1].radiance->y, 12.0);
+    EXPECT_TRUE(is_black(scene.materials[scene.shapes[1].material]));
+    expect_near(normal_of(mesh_of(scene), 0), {0, 1, 0}, 1e-6);
+    expect_near(normal_of(mesh_of(scene, 1), 0), {0, -1, 0}, 1e-6);
+    EXPECT_FALSE(scene.notes.empty());
+}
+
+TEST_F(LoaderTest, ColoursAreLinearUnlessTheySayOtherwise) {
+    const auto reflectance = [&](const std::string& property) {
+        const auto scene = load_with_sensor("<shape type='sphere'><bsdf type='diffuse'>" + property + "</bsdf></shape>");
+        return std::get<Diffuse>(scene.materials.at(0).bsdf).reflectance;
+    };
+    EXPECT_FLOAT_EQ(reflectance("<rgb name='reflectance' value='0.1 0.2,0.3'/>").z, 0.3f);
+    EXPECT_FLOAT_EQ(reflectance("<spectrum name='reflectance' value='0.4'/>").y, 0.4f);
+    EXPECT_FLOAT_EQ(reflectance("<float name='reflectance' value='0.4'/>").y, 0.4f);
+    EXPECT_NEAR(reflectance("<srgb name='reflectance' value='0.5'/>").x, 0.2140411f, 1e-6);
+    EXPECT_NEAR(reflectance("<rgb name='reflectance' value='#ff8000'/>").y, 0.2158605f, 1e-6);
+    EXPECT_FLOAT_EQ(reflectance("").x, 0.5f);
+}
+
+TEST_F(LoaderTest, ShapesWithoutABsdfAreGreyAndPointLightsHaveAPlace) {
+    const auto scene = load_with_sensor("<shape type='disk'><transform name='to_world'><scale value='3'/><translate z='1'/></transform></shape>"
+                                        "<emitter type='point'><transform name='to_world'><translate y='2'/></transform>"
+                                        "<rgb name='intensity' value='1 2 3'/></emitter>");
+    EXPECT_FLOAT_EQ(std::get<Diffuse>(scene.materials.at(scene.shapes[0].material).bsdf).reflectance.x, 0.5f);
+    const auto& disk = std::get<DiskDescription>(scene.shapes[0].geometry);
+    EXPECT_DOUBLE_EQ(disk.radius, 3.0);
+    expect_near(disk.centre, {0, 0, 1});
+    expect_near(scene.point_lights.at(0).position, {0, 2, 0});
+}
+
+TEST_F(LoaderTest, SpheresTakeCentreRadiusAndTransform) {
+    const auto scene = load_with_sensor("<shape type='sphere'><point name='center' x='1' y='2' z='3'/><float name='radius' value='2'/>"
+                                        "<transform name='to_world'><scale value='10'/><translate x='5'/></transform></shape>");
+    const auto& sphere = std::get<SphereDescription>(scene.shapes.at(0).geometry);
+    expect_near(sphere.centre, {15, 20, 30});
+    EXPECT_DOUBLE_EQ(sphere.radius, 20.0);
+}
+
+TEST_F(LoaderTest, ObjPolygonsAndNegativeIndicesBecomeTriangles) {
+    write("mesh.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 2 0\nv 0 1 0\nf -5 -4 -3 -2 -1\n");
+    const MeshDescription mesh = load_obj_mesh(folder_ / "mesh.obj", true);
+    ASSERT_EQ(mesh.triangles.size(), 3u);
+    EXPECT_TRUE(mesh.normals.empty());
+    double area = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto& t = mesh.triangles[i];
+        area += 0.5 * (mesh.positions[t.y] - mesh.positions[t.x]).cross(mesh.positions[t.z] - mesh.positions[t.x]).z;
+    }
+    EXPECT_NEAR(area, 3.0, 1e-12);
+}
+
+TEST_F(LoaderTest, ObjNormalsAreReadDroppedOrComputed) {
+    const std::string roof = "v -1 0 0\nv 0 1 0\nv 0 1 2\nv -1 0 2\nv 1 0 0\nv 1 0 2\n";
+    write("bare.obj", roof + "f 1 4 3 2\nf 2 3 6 5\n");
+    write("given.obj", roof + "vn 0 2 0\nf 1//1 4//1 3//1 2//1\nf 2//1 3//1 6//1 5//1\n");
+    const MeshDescription computed = load_obj_mesh(folder_ / "bare.obj", false);
+    ASSERT_EQ(computed.normals.size(), computed.positions.size());
+    for (std::size_t i = 0; i < computed.positions.size(); ++i)
+        if (computed.positions[i].y == 1.0) expect_near(computed.normals[i], {0, 1, 0}, 1e-12);
+    EXPECT_TRUE(load_obj_mesh(folder_ / "bare.obj", true).normals.empty());
+    EXPECT_TRUE(load_obj_mesh(folder_ / "given.obj", true).normals.empty());
+    for (const VectorD& normal : load_obj_mesh(folder_ / "given.obj", false).normals) expect_near(normal, {0, 1, 0});
+}
+
+TEST_F(LoaderTest, TheHashFollowsEveryFileThatWasRead) {
+    write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const std::string shape = "<shape type='obj'><string name='filename' value='mesh.obj'/></shape>";
+    const std::string before = load_with_sensor(shape).hash;
+    EXPECT_EQ(load_with_sensor(shape).hash, before);
+    write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n");
+    EXPECT_NE(load_with_sensor(shape).hash, before);
+}
+
+TEST_F(LoaderTest, TheCornellBoxOfThisRepositoryLoads) {
+    const auto scene = load_scene_file(std::filesystem::path(PHOTONLAB_SOURCE_DIR) / "scenes/cornell-box/scene.xml");
+    EXPECT_EQ(scene.name, "cornell-box");
+    EXPECT_EQ(scene.shapes.size(), 8u);
+    for (std::size_t shape = 0; shape < 5; ++shape) {
+        // The room's surfaces face its middle.
+        const MeshDescription& mesh = mesh_of(scene, shape);
+        EXPECT_GT(normal_of(mesh, 0).dot(VectorD(278, 274, 280) - mesh.positions[mesh.triangles[0].x]), 0.0) << shape;
+    }
+}
+
+}  // namespace
+}  // namespace photonlab
