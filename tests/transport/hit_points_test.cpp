@@ -1,0 +1,108 @@
+// The camera pass: sample positions on their grid, what a hit point says of itself, and emission seen directly.
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "statistical/rendering.h"
+#include "statistical/scenes.h"
+
+namespace photonlab::test {
+namespace {
+
+/// A camera straight above a floor at distance 2 with an image plane 2 wide there: hit points are the sample positions.
+SceneDescription floor_from_above(int width, int height) {
+    SceneDescription scene = floor_seen_at_origin(Color(0.5f));
+    CameraDescription& camera = scene.camera;
+    // Left in the image is +x, up is +z, and the view goes down.
+    camera.to_world = Matrix(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 2, 0, 1);
+    camera.fov_x = 2.0 * std::atan(0.5) * 180.0 / pi;
+    camera.width = width;
+    camera.height = height;
+    return scene;
+}
+
+TEST(HitPoints, LieOnTheGridOfSamplePositions) {
+    for (const int samples : {1, 4, 9}) {
+        const int grid = static_cast<int>(std::lround(std::sqrt(samples)));
+        const Scene scene = build_scene(floor_from_above(20, 10));
+        const HitPoints hit_points = trace_hit_points(scene, samples, 2);
+        ASSERT_EQ(hit_points.points.size(), static_cast<std::size_t>(200 * samples));
+        EXPECT_EQ(hit_points.footprints.size(), hit_points.points.size());
+        std::vector<int> seen(200, 0);
+        for (const HitPoint& point : hit_points.points) {
+            const VectorD position = VectorD(point.position) * scene.unit_length + scene.centre;
+            // The image is 2 wide and 1 high on the floor; x runs to the right, which is -x, y down, which is -z.
+            const double x = (1.0 - position.x) / 2.0 * 20.0;
+            const double y = (0.5 - position.z) * 10.0;
+            const int column = static_cast<int>(point.pixel) % 20;
+            const int row = static_cast<int>(point.pixel) / 20;
+            const int sample = seen[point.pixel]++;
+            EXPECT_NEAR(x, column + (sample % grid + 0.5) / grid, 1e-4);
+            EXPECT_NEAR(y, row + (sample / grid + 0.5) / grid, 1e-4);
+            EXPECT_NEAR(point.weight.x * samples, 1.0, 1e-6);
+            EXPECT_EQ(point.camera_edges, 1);
+            EXPECT_EQ(point.normal, Vector(0, 1, 0));
+            EXPECT_GT(point.outgoing.y, 0.0f);
+        }
+        for (const int count : seen) EXPECT_EQ(count, samples);
+    }
+}
+
+TEST(HitPoints, FootprintIsTheWidthOfAPixelThere) {
+    const Scene scene = build_scene(floor_from_above(21, 21));
+    const HitPoints hit_points = trace_hit_points(scene, 1, 1);
+    for (std::size_t i = 0; i < hit_points.points.size(); ++i)
+        if (hit_points.points[i].pixel == 10 * 21 + 10) EXPECT_NEAR(hit_points.footprints[i] * scene.unit_length, 2.0 / 21.0, 1e-5);
+}
+
+TEST(HitPoints, AreTheSameOnAnyNumberOfThreads) {
+    const Scene scene = build_scene(room(50, 37));
+    const HitPoints one = trace_hit_points(scene, 4, 1);
+    for (const int threads : {2, 3}) {
+        const HitPoints many = trace_hit_points(scene, 4, threads);
+        ASSERT_EQ(one.points.size(), many.points.size());
+        EXPECT_EQ(one.footprints, many.footprints);
+        EXPECT_EQ(one.emission, many.emission);
+        for (std::size_t i = 0; i < one.points.size(); ++i) {
+            EXPECT_EQ(one.points[i].position, many.points[i].position);
+            EXPECT_EQ(one.points[i].pixel, many.points[i].pixel);
+        }
+    }
+}
+
+TEST(HitPoints, SeeALightFromItsFrontAlone) {
+    for (const double side : {1.0, -1.0}) {
+        SceneDescription description = floor_from_above(4, 4);
+        description.shapes = {disk(VectorD(0.0), VectorD(0.0, side, 0.0), 30.0, 1, ColorD(1.0, 2.0, 3.0))};
+        const HitPoints hit_points = trace_hit_points(build_scene(description), 4, 1);
+        for (const ColorD& emission : hit_points.emission)
+            EXPECT_EQ(emission, side > 0.0 ? ColorD(1.0, 2.0, 3.0) : ColorD(0.0));
+        EXPECT_TRUE(hit_points.points.empty());    // black: nothing to gather
+    }
+}
+
+TEST(HitPoints, AreNoneBehindAOneSidedSurfaceOrInTheVoid) {
+    SceneDescription behind = floor_from_above(4, 4);
+    behind.shapes = {disk(VectorD(0.0), VectorD(0, -1, 0), 30.0, 0)};
+    SceneDescription nothing = behind;
+    nothing.shapes.clear();
+    for (const SceneDescription& description : {behind, nothing}) {
+        const HitPoints hit_points = trace_hit_points(build_scene(description), 1, 1);
+        EXPECT_TRUE(hit_points.points.empty());
+        EXPECT_EQ(hit_points.emission, std::vector<ColorD>(16, ColorD(0.0)));
+    }
+}
+
+TEST(HitPoints, RefuseANumberOfSamplesThatIsNoSquare) {
+    const Scene scene = build_scene(floor_from_above(2, 2));
+    for (const int samples : {0, -1, 2, 3, 5, 8})
+        try {
+            trace_hit_points(scene, samples, 1);
+            ADD_FAILURE() << samples;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find("perfect square"), std::string::npos) << error.what();
+        }
+}
+
+}  // namespace
+}  // namespace photonlab::test
