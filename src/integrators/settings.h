@@ -39,9 +39,9 @@ struct MethodSettings {
     ScheduleName schedule = ScheduleName::Hachisuka;     ///< ppm
     double alpha = 0.7;                                  ///< ppm: share of photons kept a pass, in (0, 1]
     int k = 120;                                         ///< photonmapper, nearest: photons searched, >= 2
-    std::optional<double> radius;                        ///< initial (ppm) or fixed (photonmapper, radius) gather radius,
+    std::optional<double> radius = std::nullopt;         ///< initial (ppm) or fixed (photonmapper, radius) gather radius,
                                                          ///< scene units, > 0; empty: three times the pixel's footprint
-    std::optional<double> max_radius;                    ///< photonmapper, nearest: scene units, > 0; empty: 5% of the
+    std::optional<double> max_radius = std::nullopt;     ///< photonmapper, nearest: scene units, > 0; empty: 5% of the
                                                          ///< scene's bounding radius
     Kernel kernel = Kernel::Disc;                        ///< ppm, photonmapper
     DirectMode direct = DirectMode::Sampled;             ///< ppm, photonmapper

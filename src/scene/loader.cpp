@@ -323,11 +323,10 @@ private:
         }
         if (!(degrees > 0.0 && degrees < 180.0))
             throw InputError(properties.place_of("fov"), fmt::format("fov: expected degrees in (0, 180), got {}", degrees));
-        if (axis == "smaller") axis = aspect > 1.0 ? "y" : "x";
-        if (axis == "larger") axis = aspect > 1.0 ? "x" : "y";
+        const bool is_wide = aspect > 1.0;
         const double tangent = std::tan(degrees * pi / 360.0);
-        if (axis == "x") return degrees;
-        if (axis == "y") return 2.0 * std::atan(tangent * aspect) * 180.0 / pi;
+        if (axis == "x" || axis == (is_wide ? "larger" : "smaller")) return degrees;
+        if (axis == "y" || axis == (is_wide ? "smaller" : "larger")) return 2.0 * std::atan(tangent * aspect) * 180.0 / pi;
         if (axis == "diagonal") return 2.0 * std::atan(tangent * aspect / std::hypot(1.0, aspect)) * 180.0 / pi;
         throw InputError(properties.place_of("fov_axis"), fmt::format("unknown fov_axis \"{}\"; known here: diagonal, larger, smaller, x, y", axis));
     }

@@ -10,7 +10,7 @@ namespace photonlab::test {
 namespace {
 
 constexpr double gather_radius = 0.15;
-constexpr int resolution = 20;    // more than one tile and one block of hit points
+constexpr int resolution = 24;    // more than one tile and one block of hit points; the lamp is two pixels high
 
 struct Method {
     std::string name;
@@ -126,7 +126,7 @@ TEST(Invariance, SceneScaledByAPowerOfTwoHasTheSameBits) {
 }
 
 // Another unit or origin changes a coordinate in the unit box by at most its last bit, 6e-8, which a few bounces make 1e-6: of
-// the photons within a radius of 0.15 units, 1e-6 / 0.04 of the box, some 5e-5 cross the rim, and the image's 400 pixels gather
+// the photons within a radius of 0.15 units, 1e-6 / 0.04 of the box, some 5e-5 cross the rim, and the image's 576 pixels gather
 // about 1e5 photons in all. So about five pixels may gain or lose a photon, and as many paths of the path tracer may take
 // another side of an edge; the rest agrees to rounding.
 constexpr int pixels_allowed = 10;

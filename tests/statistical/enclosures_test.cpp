@@ -16,7 +16,8 @@ const ColorD first_exitance(2.0, 5.0, 3.0);
 
 /// Claims the mean image of each method against `radiance` (one a channel), `share_found` of what photons bring.
 void expect_radiance(ClaimFamily& claims, const std::string& what, const SceneDescription& description,
-                     const ColorD& radiance, double gather_radius, double share_found, std::uint64_t photons) {
+                     const ColorD& radiance, double gather_radius, double share_found, std::uint64_t photons,
+                     DirectMode progressive_direct) {
     const Scene scene = build_scene(description);
     struct Method {
         std::string name;
@@ -25,7 +26,13 @@ void expect_radiance(ClaimFamily& claims, const std::string& what, const SceneDe
     };
     const Method methods[] = {
         {"path", {.integrator = "path"}, 1500},
-        {"ppm, direct sampled", {.alpha = 1.0, .radius = gather_radius, .direct_samples = 20, .photons_per_pass = photons}, 10},
+        {"ppm",
+         {.alpha = 0.9,
+          .radius = gather_radius,
+          .direct = progressive_direct,
+          .direct_samples = 20,
+          .photons_per_pass = photons},
+         10},
         {"photonmapper, direct by photons",
          {.integrator = "photonmapper", .radius = gather_radius, .direct = DirectMode::Photons, .photons_per_pass = photons},
          10},
@@ -40,10 +47,9 @@ void expect_radiance(ClaimFamily& claims, const std::string& what, const SceneDe
             for (int c = 0; c < 3; ++c) values[c].push_back(reflected[c]);
             expected = radiance - emission;
         }
-        const bool photons_only = method.settings.direct == DirectMode::Photons;
         for (int c = 0; c < 3; ++c)
             claims.mean_is(what + ", " + method.name + ", channel " + std::to_string(c), values[c],
-                           expected[c] * (photons_only ? share_found : 1.0), 0.02);
+                           expected[c] * (method.settings.integrator == "path" ? 1.0 : share_found), 0.02);
     }
 }
 
@@ -62,18 +68,20 @@ TEST(ParallelPlanes, HaveTheRadiosityOfInfinitePlanes) {
         first[c] = first_exitance[c] / (1.0 - static_cast<double>(first_colour[c]) * second_colour[c]) / pi;
         second[c] = second_colour[c] * first[c];
     }
+    // A point drawn on so wide a lamp is nearly always far: shadow rays are left out, photons and the path tracer's own
+    // directions find what they would.
     ClaimFamily claims;
     description.camera = look_at(VectorD(0.6, 0.5 * gap, 0.3), VectorD(0.0));
-    expect_radiance(claims, "the emitting plane", description, first, 10.0 * gap, 1.0, 1500);
+    expect_radiance(claims, "the emitting plane", description, first, 10.0 * gap, 1.0, 3000, DirectMode::Photons);
     description.camera = look_at(VectorD(0.6, 0.5 * gap, 0.3), VectorD(0.0, gap, 0.0));
-    expect_radiance(claims, "the other plane", description, second, 10.0 * gap, 1.0, 1500);
+    expect_radiance(claims, "the other plane", description, second, 10.0 * gap, 1.0, 3000, DirectMode::Photons);
 }
 
 // Form factors of concentric spheres: F12 = 1, F21 = A1 / A2, F22 = 1 - F21. Each sphere is uniform by symmetry.
 TEST(ConcentricSpheres, HaveTheRadiosityOfATwoSurfaceEnclosure) {
     constexpr double inner_radius = 1.2;
     constexpr double outer_radius = 2.0;
-    constexpr double gather_radius = 0.15;
+    constexpr double gather_radius = 0.3;
     SceneDescription description;
     description.materials = {diffuse(first_colour), diffuse(second_colour)};
     description.shapes = {sphere(VectorD(0.0), inner_radius, false, 0, first_exitance / pi),
@@ -89,14 +97,14 @@ TEST(ConcentricSpheres, HaveTheRadiosityOfATwoSurfaceEnclosure) {
         inner[c] = first_exitance[c] / pi + rho1 * outer[c];
     }
     ClaimFamily claims;
-    // On the convex sphere a photon at distance d has its horizon turned by d / R1, so (d / R1)^2 / 4 of the light comes from
-    // below the gather point's: r^2 / (8 R1^2) of it in all. On the hollow one it is of the order r^2 / (8 R2^2), as for the
-    // sphere alone; both are below 0.2%, and below what is resolved.
+    // On the convex sphere a photon at distance d has its horizon turned by as much as its normal, so d^2 / (4 R1^2) of the
+    // light comes from below the gather point's: r^2 / (8 R1^2) of it over the disc. On the hollow one what comes from itself
+    // loses less than r^2 / (8 R2^2), 0.3%: below what is resolved.
     const double refused = gather_radius * gather_radius / (8.0 * inner_radius * inner_radius);
     description.camera = look_at(VectorD(0.0, 1.5, 0.3), VectorD(0.0));
-    expect_radiance(claims, "the inner sphere", description, inner, gather_radius, 1.0 - refused, 20'000);
+    expect_radiance(claims, "the inner sphere", description, inner, gather_radius, 1.0 - refused, 5000, DirectMode::Sampled);
     description.camera = look_at(VectorD(0.0, 1.5, 0.3), VectorD(0.4, 2.0, 0.5));
-    expect_radiance(claims, "the outer sphere", description, outer, gather_radius, 1.0, 20'000);
+    expect_radiance(claims, "the outer sphere", description, outer, gather_radius, 1.0, 5000, DirectMode::Sampled);
 }
 
 }  // namespace

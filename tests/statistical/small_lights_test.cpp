@@ -123,7 +123,7 @@ void expect_irradiance(ClaimFamily& claims, const std::string& light, const Scen
         std::vector<double> radiance;
         for (std::uint64_t seed = 1; seed <= 32; ++seed)
             radiance.push_back(mean_of(render(scene, {.integrator = integrator, .direct_samples = 4, .photons_per_pass = 1},
-                                              {.passes = 200, .seed = seed})
+                                              {.passes = 100, .seed = seed})
                                            .image,
                                        direct_layer)[channel]);
         claims.mean_is(light + ", direct by " + integrator, radiance, at_origin, 0.01);

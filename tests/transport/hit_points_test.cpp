@@ -39,7 +39,7 @@ TEST(HitPoints, LieOnTheGridOfSamplePositions) {
             const int sample = seen[point.pixel]++;
             EXPECT_NEAR(x, column + (sample % grid + 0.5) / grid, 1e-4);
             EXPECT_NEAR(y, row + (sample / grid + 0.5) / grid, 1e-4);
-            EXPECT_NEAR(point.weight.x * samples, 1.0, 1e-6);
+            EXPECT_NEAR(point.weight.x, 1.0 / samples, 1e-7);
             EXPECT_EQ(point.camera_edges, 1);
             EXPECT_EQ(point.normal, Vector(0, 1, 0));
             EXPECT_GT(point.outgoing.y, 0.0f);
@@ -51,8 +51,10 @@ TEST(HitPoints, LieOnTheGridOfSamplePositions) {
 TEST(HitPoints, FootprintIsTheWidthOfAPixelThere) {
     const Scene scene = build_scene(floor_from_above(21, 21));
     const HitPoints hit_points = trace_hit_points(scene, 1, 1);
-    for (std::size_t i = 0; i < hit_points.points.size(); ++i)
-        if (hit_points.points[i].pixel == 10 * 21 + 10) EXPECT_NEAR(hit_points.footprints[i] * scene.unit_length, 2.0 / 21.0, 1e-5);
+    for (std::size_t i = 0; i < hit_points.points.size(); ++i) {
+        if (hit_points.points[i].pixel != 10 * 21 + 10) continue;
+        EXPECT_NEAR(hit_points.footprints[i] * scene.unit_length, 2.0 / 21.0, 1e-5);
+    }
 }
 
 TEST(HitPoints, AreTheSameOnAnyNumberOfThreads) {
