@@ -25,7 +25,7 @@ except ImportError as error:
 COMPONENT_TITLES = {"total": "whole image", "gathered": "gathered light alone"}
 FLOOR_LINE = {"color": "#555555", "linewidth": 0.8, "linestyle": (0, (4, 3)), "zorder": 1}
 BELOW_MARK = {"linestyle": "none", "marker": 7, "markersize": 4.5, "zorder": 5}    # 7: points down
-FARTHEST_FLOOR = 4.0    # a floor that many times below the least error is told, not drawn: it would flatten the curves
+FARTHEST_FLOOR = 30.0   # a floor that many times below the least error is told, not drawn: it would flatten the curves
 
 
 def curves_of(rows, labels, column):

@@ -178,7 +178,7 @@ private:
         if (!filename) throw InputError(element.place, "obj: expected a <string name=\"filename\">");
         const bool face_normals = properties.boolean("face_normals").value_or(false);
         const bool flip_texture = properties.boolean("flip_tex_coords").value_or(true);
-        const std::filesystem::path file = element.folder / *filename;
+        const std::filesystem::path file = element.file_called(*filename);
         bytes_read_ += read_whole_file(file, properties.place_of("filename"));
         MeshDescription mesh = load_obj_mesh(file, face_normals);
         if (flip_texture)

@@ -55,8 +55,9 @@ bool is_name_character(char c) { return std::isalnum(static_cast<unsigned char>(
 
 class Reader {
 public:
-    Reader(const std::map<std::string, std::string>& parameters, std::string& bytes_read)
-        : parameters_(parameters), bytes_read_(bytes_read) {}
+    Reader(const std::filesystem::path& scene_folder, const std::map<std::string, std::string>& parameters,
+           std::string& bytes_read)
+        : scene_folder_(scene_folder), parameters_(parameters), bytes_read_(bytes_read) {}
 
     XmlElement read_file(const std::filesystem::path& file, const std::string& from) {
         std::error_code ignored;
@@ -97,7 +98,8 @@ private:
         XmlElement element;
         element.tag = node.name();
         element.place = fmt::format("{}:{}", file.string(), lines.at(node.offset_debug()));
-        element.folder = file.parent_path();
+        element.scene_folder = scene_folder_;
+        element.own_folder = file.parent_path();
         for (const pugi::xml_attribute& attribute : node.attributes()) {
             const std::string name = attribute.name();
             std::string value = replace_names(attribute.value(), element.place);
@@ -116,7 +118,7 @@ private:
                 values_.emplace(name, given != parameters_.end() ? given->second : converted.require("value"));
                 used_.insert(name);
             } else if (converted.tag == "include") {
-                XmlElement included = read_file(converted.folder / converted.require("filename"), converted.place);
+                XmlElement included = read_file(converted.file_called(converted.require("filename")), converted.place);
                 for (XmlElement& inner : included.children) element.children.push_back(std::move(inner));
             } else {
                 element.children.push_back(std::move(converted));
@@ -154,6 +156,7 @@ private:
         return found == values_.end() ? nullptr : &found->second;
     }
 
+    const std::filesystem::path scene_folder_;
     const std::map<std::string, std::string>& parameters_;
     std::string& bytes_read_;
     std::map<std::string, std::string> values_;    // of the <default>s read so far
@@ -182,9 +185,15 @@ const std::string& XmlElement::require(std::string_view name) const {
     return found->second;
 }
 
+std::filesystem::path XmlElement::file_called(const std::string& name) const {
+    const std::filesystem::path beside_scene = scene_folder / name;
+    const std::filesystem::path beside_own = own_folder / name;
+    return !std::filesystem::exists(beside_scene) && std::filesystem::exists(beside_own) ? beside_own : beside_scene;
+}
+
 XmlElement read_scene_xml(const std::filesystem::path& file, const std::map<std::string, std::string>& parameters,
                           std::string& bytes_read) {
-    Reader reader(parameters, bytes_read);
+    Reader reader(file.parent_path(), parameters, bytes_read);
     XmlElement scene = reader.read_file(file, file.string());
     reader.require_all_used(file);
     return scene;

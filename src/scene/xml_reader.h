@@ -16,13 +16,17 @@ struct XmlElement {
     std::map<std::string, std::string> attributes;    ///< $names replaced; `name` in snake_case ("toWorld" is "to_world")
     std::vector<XmlElement> children;
     std::string place;                                ///< "file:line"
-    std::filesystem::path folder;                     ///< of the file it stands in: file names are relative to it
+    std::filesystem::path scene_folder;               ///< of the scene file that was asked for
+    std::filesystem::path own_folder;                 ///< of the file it stands in: another one inside an include
 
     /// The attribute's value, or "" when there is none.
     std::string attribute(std::string_view name) const;
 
     /// The attribute's value; InputError when there is none.
     const std::string& require(std::string_view name) const;
+
+    /// The file that the element names: relative to the scene's folder, as in Mitsuba, or else to its own file's folder.
+    std::filesystem::path file_called(const std::string& name) const;
 };
 
 /// Reads `file` and what it includes. Returns its <scene>, the children of included scenes in place of each <include>,

@@ -269,6 +269,16 @@ TEST_F(LoaderTest, IncludesAndNestedReferencesAreFollowed) {
     EXPECT_FLOAT_EQ(std::get<Diffuse>(material.bsdf).reflectance.x, 0.25f);
 }
 
+TEST_F(LoaderTest, FilesOfAnIncludeAreLookedForBesideTheSceneAndThenBesideTheInclude) {
+    std::filesystem::create_directories(folder_ / "fragments");
+    const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    write("a.obj", mesh);
+    write("fragments/b.obj", mesh);
+    write("fragments/shapes.xml", "<scene><shape type='obj'><string name='filename' value='a.obj'/></shape>"
+                                  "<shape type='obj'><string name='filename' value='b.obj'/></shape></scene>");
+    EXPECT_EQ(load_with_sensor("<include filename='fragments/shapes.xml'/>").shapes.size(), 2u);
+}
+
 TEST_F(LoaderTest, PublicCornellBoxesOpenUnmodified) {
     // In the manner of the scenes that come with Mitsuba 3 and of public collections: defaults, references before use in a
     // bsdf, a light with black reflectance, settings for other programs.

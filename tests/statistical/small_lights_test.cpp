@@ -126,7 +126,7 @@ void expect_irradiance(ClaimFamily& claims, const std::string& light, const Scen
                                               {.passes = 100, .seed = seed})
                                            .image,
                                        direct_layer)[channel]);
-        claims.mean_is(light + ", direct by " + integrator, radiance, at_origin, 0.01);
+        claims.mean_is(light + ", direct by " + integrator, radiance, at_origin, 0.015);
     }
     std::vector<double> radiance;
     for (std::uint64_t seed = 1; seed <= 32; ++seed)
