@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "core/error.h"
-#include "experiment/files.h"
+#include "core/files.h"
 #include "integrators/registry.h"
 
 namespace photonlab {

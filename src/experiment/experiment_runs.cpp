@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <map>
 
-#include "experiment/files.h"
-#include "experiment/hash.h"
+#include "core/files.h"
+#include "core/hash.h"
 #include "experiment/progress.h"
 #include "experiment/reference.h"
 #include "experiment/run_estimate.h"

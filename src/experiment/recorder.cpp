@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "core/error.h"
-#include "experiment/files.h"
+#include "core/files.h"
 #include "integrators/registry.h"
 
 namespace photonlab {

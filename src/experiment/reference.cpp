@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "experiment/files.h"
-#include "experiment/hash.h"
+#include "core/files.h"
+#include "core/hash.h"
 #include "experiment/reference_store.h"
 #include "image/exr.h"
 

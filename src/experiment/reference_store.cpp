@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "core/error.h"
-#include "experiment/files.h"
-#include "experiment/hash.h"
+#include "core/files.h"
+#include "core/hash.h"
 #include "experiment/version.h"
 #include "image/exr.h"
 #include "integrators/registry.h"

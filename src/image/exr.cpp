@@ -18,7 +18,7 @@
 #include <set>
 
 #include "core/error.h"
-#include "image/temporary_file.h"
+#include "core/temporary_file.h"
 
 namespace photonlab {
 

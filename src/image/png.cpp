@@ -5,7 +5,7 @@
 #include <cassert>
 
 #include "core/error.h"
-#include "image/temporary_file.h"
+#include "core/temporary_file.h"
 
 namespace photonlab {
 

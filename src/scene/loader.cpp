@@ -6,12 +6,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#define XXH_INLINE_ALL
-#include <xxhash.h>
-
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/hash.h"
 #include "scene/properties.h"
 #include "scene/transform.h"
 #include "scene/xml_reader.h"
@@ -369,8 +367,7 @@ SceneDescription load_scene_file(const std::filesystem::path& file, const std::m
     for (const auto& [name, value] : parameters) bytes_read += fmt::format("\n{}={}", name, value);
     Loader(scene, bytes_read).load(root);
 
-    const XXH128_hash_t hash = XXH3_128bits(bytes_read.data(), bytes_read.size());
-    scene.hash = fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+    scene.hash = hash_text(bytes_read);
     const std::filesystem::path absolute = std::filesystem::absolute(file);
     scene.name = file.filename() == "scene.xml" ? absolute.parent_path().filename().string() : file.stem().string();
     return scene;

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "experiment/files.h"
+#include "core/files.h"
 #include "scene/loader.h"
 #include "scene/scene.h"
 

@@ -1,5 +1,5 @@
-// What must not change an image: threads, the unit of light, the unit of length, where the origin is, and which passes were
-// looked at. No reference is needed for any of it (theory.md, section 6).
+// What must not change an image: threads, the unit of light, the unit of length, where the origin is, and which passes
+// were looked at. No reference is needed for any of it (theory.md, section 6).
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@ namespace photonlab::test {
 namespace {
 
 constexpr double gather_radius = 0.15;
-constexpr int resolution = 24;    // more than one tile and one block of hit points; the lamp is two pixels high
+constexpr int resolution = 24;  // more than one tile and one block of hit points; the lamp is two pixels high
 
 struct Method {
     std::string name;
@@ -22,8 +22,10 @@ std::vector<Method> methods(double unit = 1.0) {
     return {
         {"path", {.integrator = "path"}},
         {"ppm", {.radius = radius, .direct_samples = 2, .photons_per_pass = 3000}},
-        {"ppm, footprint", {.schedule = ScheduleName::KnausZwicker, .direct = DirectMode::Photons, .photons_per_pass = 3000}},
-        {"photonmapper", {.integrator = "photonmapper", .radius = radius, .kernel = Kernel::Cone, .photons_per_pass = 3000}},
+        {"ppm, footprint",
+         {.schedule = ScheduleName::KnausZwicker, .direct = DirectMode::Photons, .photons_per_pass = 3000}},
+        {"photonmapper",
+         {.integrator = "photonmapper", .radius = radius, .kernel = Kernel::Cone, .photons_per_pass = 3000}},
         {"photonmapper nearest",
          {.integrator = "photonmapper",
           .mode = GatherMode::Nearest,
@@ -32,7 +34,10 @@ std::vector<Method> methods(double unit = 1.0) {
           .max_depth = 4,
           .photons_per_pass = 3000}},
         {"photonmapper nearest, default radius",
-         {.integrator = "photonmapper", .mode = GatherMode::Nearest, .direct = DirectMode::Photons, .photons_per_pass = 3000}},
+         {.integrator = "photonmapper",
+          .mode = GatherMode::Nearest,
+          .direct = DirectMode::Photons,
+          .photons_per_pass = 3000}},
     };
 }
 
@@ -42,7 +47,8 @@ SceneDescription changed_room(double light, double unit = 1.0, const VectorD& of
     scene.point_lights = {point_light(VectorD(-0.5, 0.2, -0.6), ColorD(0.5, 1.0, 2.0))};
     for (ShapeDescription& shape : scene.shapes) {
         if (shape.radiance) *shape.radiance *= light;
-        for (VectorD& position : std::get<MeshDescription>(shape.geometry).positions) position = position * unit + offset;
+        for (VectorD& position : std::get<MeshDescription>(shape.geometry).positions)
+            position = position * unit + offset;
     }
     for (PointLightDescription& lamp : scene.point_lights) {
         lamp.position = lamp.position * unit + offset;
@@ -62,7 +68,8 @@ void expect_same_bits(const Image& expected, const Image& actual, double factor,
         const std::vector<Color>& pixels = *actual.find(layer.name);
         ASSERT_EQ(pixels.size(), layer.pixels.size());
         for (std::size_t i = 0; i < pixels.size(); ++i)
-            ASSERT_EQ(pixels[i], layer.pixels[i] * static_cast<float>(factor)) << what << ", " << layer.name << ", pixel " << i;
+            ASSERT_EQ(pixels[i], layer.pixels[i] * static_cast<float>(factor))
+                << what << ", " << layer.name << ", pixel " << i;
     }
 }
 
@@ -88,8 +95,9 @@ TEST(Invariance, AnyNumberOfThreadsGivesTheSameBits) {
     for (const Method& method : methods()) {
         const Image one = image_of(changed_room(1.0), method, {.passes = 3, .threads = 1, .samples_per_pixel = 4});
         for (const int threads : {2, 3})
-            expect_same_bits(one, image_of(changed_room(1.0), method, {.passes = 3, .threads = threads, .samples_per_pixel = 4}),
-                             1.0, method.name + ", threads " + std::to_string(threads));
+            expect_same_bits(
+                one, image_of(changed_room(1.0), method, {.passes = 3, .threads = threads, .samples_per_pixel = 4}),
+                1.0, method.name + ", threads " + std::to_string(threads));
     }
 }
 
@@ -97,8 +105,8 @@ TEST(Invariance, LightTimesAPowerOfTwoIsTheImageTimesIt) {
     for (const Method& method : methods()) {
         const Image image = image_of(changed_room(1.0), method);
         for (const int exponent : {1, -3, -100, 90})
-            expect_same_bits(image, image_of(changed_room(std::ldexp(1.0, exponent)), method), std::ldexp(1.0, exponent),
-                             method.name + ", 2^" + std::to_string(exponent));
+            expect_same_bits(image, image_of(changed_room(std::ldexp(1.0, exponent)), method),
+                             std::ldexp(1.0, exponent), method.name + ", 2^" + std::to_string(exponent));
     }
 }
 
@@ -120,15 +128,15 @@ TEST(Invariance, SceneScaledByAPowerOfTwoHasTheSameBits) {
         const double unit = std::ldexp(1.0, exponent);
         const std::vector<Method> scaled = methods(unit);
         for (std::size_t i = 0; i < original.size(); ++i)
-            expect_same_bits(image_of(changed_room(1.0), original[i]), image_of(changed_room(1.0, unit), scaled[i]), 1.0,
-                             original[i].name + ", 2^" + std::to_string(exponent));
+            expect_same_bits(image_of(changed_room(1.0), original[i]), image_of(changed_room(1.0, unit), scaled[i]),
+                             1.0, original[i].name + ", 2^" + std::to_string(exponent));
     }
 }
 
-// Another unit or origin changes a coordinate in the unit box by at most its last bit, 6e-8, which a few bounces make 1e-6: of
-// the photons within a radius of 0.15 units, 1e-6 / 0.04 of the box, some 5e-5 cross the rim, and the image's 576 pixels gather
-// about 1e5 photons in all. So about five pixels may gain or lose a photon, and as many paths of the path tracer may take
-// another side of an edge; the rest agrees to rounding.
+// Another unit or origin changes a coordinate in the unit box by at most its last bit, 6e-8, which a few bounces make
+// 1e-6: of the photons within a radius of 0.15 units, 1e-6 / 0.04 of the box, some 5e-5 cross the rim, and the image's
+// 576 pixels gather about 1e5 photons in all. So about five pixels may gain or lose a photon, and as many paths of the
+// path tracer may take another side of an edge; the rest agrees to rounding.
 constexpr int pixels_allowed = 10;
 constexpr double rounding = 2e-4;
 
@@ -137,8 +145,8 @@ TEST(Invariance, SceneInAnotherUnitGivesTheSameImage) {
     for (const double unit : {1e-4, 1e4, 1e-9, 1e12}) {
         const std::vector<Method> scaled = methods(unit);
         for (std::size_t i = 0; i < original.size(); ++i)
-            EXPECT_LE(pixels_that_differ(image_of(changed_room(1.0), original[i]), image_of(changed_room(1.0, unit), scaled[i]),
-                                         rounding),
+            EXPECT_LE(pixels_that_differ(image_of(changed_room(1.0), original[i]),
+                                         image_of(changed_room(1.0, unit), scaled[i]), rounding),
                       pixels_allowed)
                 << original[i].name << ", unit " << unit;
     }
@@ -148,7 +156,8 @@ TEST(Invariance, SceneMovedGivesTheSameImage) {
     for (const Method& method : methods()) {
         const Image image = image_of(changed_room(1.0), method);
         for (const VectorD& offset : {VectorD(0.1, -0.2, 0.3), VectorD(1e5, -3e4, 2e5)})
-            EXPECT_LE(pixels_that_differ(image, image_of(changed_room(1.0, 1.0, offset), method), rounding), pixels_allowed)
+            EXPECT_LE(pixels_that_differ(image, image_of(changed_room(1.0, 1.0, offset), method), rounding),
+                      pixels_allowed)
                 << method.name << ", by " << offset.x;
     }
 }
@@ -156,7 +165,8 @@ TEST(Invariance, SceneMovedGivesTheSameImage) {
 TEST(Invariance, PassesLookedAtDoNotChangeTheLast) {
     for (const Method& method : methods())
         expect_same_bits(image_of(changed_room(1.0), method, {.passes = 5}),
-                         image_of(changed_room(1.0), method, {.passes = 5, .estimate_every_pass = true}), 1.0, method.name);
+                         image_of(changed_room(1.0), method, {.passes = 5, .estimate_every_pass = true}), 1.0,
+                         method.name);
 }
 
 TEST(Invariance, LookingBeforeTheFirstPassShowsEmissionAndDirectLightAndChangesNothing) {
@@ -169,8 +179,8 @@ TEST(Invariance, LookingBeforeTheFirstPassShowsEmissionAndDirectLightAndChangesN
         EXPECT_EQ(mean_of(before, direct_layer).x > 0.0, method.settings.direct == DirectMode::Sampled) << method.name;
         for (std::uint64_t pass = 1; pass <= 2; ++pass)
             integrator->run_pass(pass, trace_photons(scene, photon_settings(method.settings, 1), pass, 1), no_listener);
-        expect_same_bits(render(scene, hit_points, method.settings, {.passes = 2}).image, integrator->estimate(no_listener), 1.0,
-                         method.name);
+        expect_same_bits(render(scene, hit_points, method.settings, {.passes = 2}).image,
+                         integrator->estimate(no_listener), 1.0, method.name);
     }
 }
 

@@ -20,10 +20,15 @@ Scene floor_of_room() {
 }
 
 MethodSettings progressive(ScheduleName schedule, double alpha) {
-    return {.schedule = schedule, .alpha = alpha, .radius = gather_radius, .direct = DirectMode::Photons, .photons_per_pass = 60};
+    return {.schedule = schedule,
+            .alpha = alpha,
+            .radius = gather_radius,
+            .direct = DirectMode::Photons,
+            .photons_per_pass = 60};
 }
 
-// Hachisuka, Ogaki & Jensen 2008: tau <- (tau + phi) rho, R^2 <- R^2 rho, L = tau / (pi R^2 N_emitted). A pass may be empty.
+// Hachisuka, Ogaki & Jensen 2008: tau <- (tau + phi) rho, R^2 <- R^2 rho, L = tau / (pi R^2 N_emitted). A pass may be
+// empty.
 TEST(ProgressivePhotonMapping, IsTheShrinkingFluxOfItsPaper) {
     const Scene scene = floor_of_room();
     const HitPoints hit_points = trace_hit_points(scene, 1, 1);
@@ -53,7 +58,8 @@ TEST(ProgressivePhotonMapping, IsTheShrinkingFluxOfItsPaper) {
             integrator->run_pass(pass, photons, no_listener);
             const ColorD radiance = flux * (scene.total_power / (pi * squared_radius * static_cast<double>(paths)));
             const ColorD estimate = mean_of(integrator->estimate(no_listener), gathered_layer);
-            for (int c = 0; c < 3; ++c) ASSERT_NEAR(estimate[c], radiance[c], 1e-6 * radiance[c]) << alpha << " pass " << pass;
+            for (int c = 0; c < 3; ++c)
+                ASSERT_NEAR(estimate[c], radiance[c], 1e-6 * radiance[c]) << alpha << " pass " << pass;
         }
         EXPECT_GT(empty_passes, 0);
         EXPECT_LT(empty_passes, 200);
@@ -71,7 +77,6 @@ TEST(ProgressivePhotonMapping, KnausZwickerRadiiIgnoreThePhotons) {
             for (std::size_t i = 1; i <= result.radii.size(); ++i) {
                 const double n = static_cast<double>(i);
                 const double share = std::exp(std::lgamma(n + alpha) - std::lgamma(1.0 + alpha) - std::lgamma(n + 1.0));
-                // The recursion and the closed form agree for r_1 = r: Gamma(1 + alpha) / (Gamma(1 + alpha) Gamma(2)) = 1.
                 EXPECT_NEAR(result.radii[i - 1], gather_radius * std::sqrt(share), 1e-9) << "pass " << i;
             }
         }
@@ -83,7 +88,8 @@ TEST(ProgressivePhotonMapping, WithAlphaOneIsTheAverageOfPhotonMapsOfOneRadius) 
     constexpr std::uint64_t passes = 12;
     for (const DirectMode direct : {DirectMode::Sampled, DirectMode::Photons})
         for (const ScheduleName schedule : {ScheduleName::Hachisuka, ScheduleName::KnausZwicker}) {
-            MethodSettings method{.schedule = schedule, .alpha = 1.0, .radius = 0.1, .direct = direct, .photons_per_pass = 1000};
+            MethodSettings method{
+                .schedule = schedule, .alpha = 1.0, .radius = 0.1, .direct = direct, .photons_per_pass = 1000};
             const Image progressive = render(scene, hit_points, method, {.passes = passes}).image;
             method.integrator = "photonmapper";
             std::vector<ColorD> average(400, ColorD(0.0));
@@ -100,11 +106,13 @@ TEST(ProgressivePhotonMapping, WithAlphaOneIsTheAverageOfPhotonMapsOfOneRadius) 
         }
 }
 
-// All photons of all passes in one map, divided by all paths: the same as the average of one map a pass, at a fixed radius.
+// All photons of all passes in one map, divided by all paths: the same as the average of one map a pass, at a fixed
+// radius.
 TEST(PhotonMapping, OverPassesIsTheAverageOfItsPasses) {
     const Scene scene = build_scene(room(20, 20));
     const HitPoints hit_points = trace_hit_points(scene, 1, 1);
-    const MethodSettings mapper{.integrator = "photonmapper", .radius = 0.1, .kernel = Kernel::Biweight, .photons_per_pass = 1000};
+    const MethodSettings mapper{
+        .integrator = "photonmapper", .radius = 0.1, .kernel = Kernel::Biweight, .photons_per_pass = 1000};
     MethodSettings progressive = mapper;
     progressive.integrator = "ppm";
     progressive.alpha = 1.0;
@@ -124,7 +132,8 @@ TEST(PhotonMapping, GathersNothingThroughAThinWall) {
     description.point_lights = {point_light(VectorD(0.0, -2.0, 0.0), ColorD(1.0))};
     const Scene scene = build_scene(description);
     for (const char* integrator : {"ppm", "photonmapper"}) {
-        const MethodSettings method{.integrator = integrator, .radius = 2.0, .direct = DirectMode::Photons, .photons_per_pass = 5000};
+        const MethodSettings method{
+            .integrator = integrator, .radius = 2.0, .direct = DirectMode::Photons, .photons_per_pass = 5000};
         const Rendering result = render(scene, method, {});
         EXPECT_EQ(mean_total(result.image), ColorD(0.0)) << integrator;
         EXPECT_EQ(result.report.photons_gathered, 0u) << integrator;
@@ -138,7 +147,8 @@ TEST(PhotonMapping, CountsThePhotonsThatItGathered) {
     std::uint64_t expected = 0;
     for (std::uint64_t pass = 1; pass <= 4; ++pass) {
         const PhotonPass photons = trace_photons(scene, {.paths = 2000, .store_direct = true}, pass, 1);
-        expected += gather_within(PhotonMap(photons.photons), scene, hit_points.points[0], radius, Kernel::Disc, -1).count();
+        expected +=
+            gather_within(PhotonMap(photons.photons), scene, hit_points.points[0], radius, Kernel::Disc, -1).count();
     }
     ASSERT_GT(expected, 100u);
     for (const char* integrator : {"ppm", "photonmapper"}) {
@@ -156,7 +166,9 @@ TEST(PhotonMapping, CountsThePhotonsThatItGathered) {
 TEST(InitialRadius, IsThreeFootprintsUnlessGivenInSceneUnits) {
     const Scene scene = build_scene(room(20, 20));
     const HitPoints hit_points = trace_hit_points(scene, 1, 1);
-    const auto report_of = [&](const MethodSettings& method) { return make_integrator(method, {scene, hit_points})->report(); };
+    const auto report_of = [&](const MethodSettings& method) {
+        return make_integrator(method, {scene, hit_points})->report();
+    };
     double mean = 0.0;
     for (const float footprint : hit_points.footprints)
         mean += 3.0 * footprint * scene.unit_length / static_cast<double>(hit_points.footprints.size());

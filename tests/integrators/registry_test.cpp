@@ -1,5 +1,5 @@
-// Names and ranges of settings: what is refused, with words that say what would have been accepted, and which settings a
-// method uses.
+// Names and ranges of settings: what is refused, with words that say what would have been accepted, and which settings
+// a method uses.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,8 @@ TEST(Registry, RefusesValuesOutOfRangeAndSaysWhatItExpects) {
     const double too_large = std::numeric_limits<double>::infinity();
     EXPECT_EQ(refusal({}), "");
     EXPECT_NE(refusal({.integrator = "pppm"}).find("known here: path, photonmapper, ppm"), std::string::npos);
-    for (const double alpha : {0.0, -0.5, 1.0001, nan}) EXPECT_NE(refusal({.alpha = alpha}).find("alpha"), std::string::npos);
+    for (const double alpha : {0.0, -0.5, 1.0001, nan})
+        EXPECT_NE(refusal({.alpha = alpha}).find("alpha"), std::string::npos);
     for (const double radius : {0.0, -1.0, nan, too_large}) {
         EXPECT_NE(refusal({.radius = radius}).find("radius"), std::string::npos);
         EXPECT_NE(refusal({.max_radius = radius}).find("max_radius"), std::string::npos);

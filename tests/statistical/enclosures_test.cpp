@@ -1,5 +1,5 @@
-// Two diffuse surfaces that light each other, of different albedo: radiosity in closed form. Unlike in a furnace each surface
-// has an answer of its own, so light that lands on the wrong one shows.
+// Two diffuse surfaces that light each other, of different albedo: radiosity in closed form. Unlike in a furnace each
+// surface has an answer of its own, so light that lands on the wrong one shows.
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,10 @@ void expect_radiance(ClaimFamily& claims, const std::string& what, const SceneDe
           .photons_per_pass = photons},
          10},
         {"photonmapper, direct by photons",
-         {.integrator = "photonmapper", .radius = gather_radius, .direct = DirectMode::Photons, .photons_per_pass = photons},
+         {.integrator = "photonmapper",
+          .radius = gather_radius,
+          .direct = DirectMode::Photons,
+          .photons_per_pass = photons},
          10},
     };
     for (const Method& method : methods) {
@@ -54,8 +57,8 @@ void expect_radiance(ClaimFamily& claims, const std::string& what, const SceneDe
 }
 
 // Discs of radius 100 times their gap stand for infinite planes. A hop across the gap is longer than s with probability
-// g^2 / (g^2 + s^2), 1e-4 at the rim; light that counts here makes three hops on average, so some 3e-4 of it is missing:
-// far below the 1% that is resolved.
+// g^2 / (g^2 + s^2), 1e-4 at the rim; light that counts here makes three hops on average, so some 3e-4 of it is
+// missing: far below the 1% that is resolved.
 TEST(ParallelPlanes, HaveTheRadiosityOfInfinitePlanes) {
     constexpr double gap = 0.5;
     SceneDescription description;
@@ -86,7 +89,7 @@ TEST(ConcentricSpheres, HaveTheRadiosityOfATwoSurfaceEnclosure) {
     description.materials = {diffuse(first_colour), diffuse(second_colour)};
     description.shapes = {sphere(VectorD(0.0), inner_radius, false, 0, first_exitance / pi),
                           sphere(VectorD(0.0), outer_radius, true, 1)};
-    const double from_outer = inner_radius * inner_radius / (outer_radius * outer_radius);    // F21
+    const double from_outer = inner_radius * inner_radius / (outer_radius * outer_radius);  // F21
     ColorD inner;
     ColorD outer;
     for (int c = 0; c < 3; ++c) {
@@ -97,12 +100,13 @@ TEST(ConcentricSpheres, HaveTheRadiosityOfATwoSurfaceEnclosure) {
         inner[c] = first_exitance[c] / pi + rho1 * outer[c];
     }
     ClaimFamily claims;
-    // On the convex sphere a photon at distance d has its horizon turned by as much as its normal, so d^2 / (4 R1^2) of the
-    // light comes from below the gather point's: r^2 / (8 R1^2) of it over the disc. On the hollow one what comes from itself
-    // loses less than r^2 / (8 R2^2), 0.3%: below what is resolved.
+    // On the convex sphere a photon at distance d has its horizon turned by as much as its normal, so d^2 / (4 R1^2) of
+    // the light comes from below the gather point's: r^2 / (8 R1^2) of it over the disc. On the hollow one what comes
+    // from itself loses less than r^2 / (8 R2^2), 0.3%: below what is resolved.
     const double refused = gather_radius * gather_radius / (8.0 * inner_radius * inner_radius);
     description.camera = look_at(VectorD(0.0, 1.5, 0.3), VectorD(0.0));
-    expect_radiance(claims, "the inner sphere", description, inner, gather_radius, 1.0 - refused, 5000, DirectMode::Sampled);
+    expect_radiance(claims, "the inner sphere", description, inner, gather_radius, 1.0 - refused, 5000,
+                    DirectMode::Sampled);
     description.camera = look_at(VectorD(0.0, 1.5, 0.3), VectorD(0.4, 2.0, 0.5));
     expect_radiance(claims, "the outer sphere", description, outer, gather_radius, 1.0, 5000, DirectMode::Sampled);
 }

@@ -1,6 +1,7 @@
-// The furnace: inside a closed surface that emits radiance Le and reflects the share rho, every ray sees Le / (1 - rho), and
-// with at most K reflections Le (1 - rho^(K+1)) / (1 - rho), wherever it points and whatever the shape. A sphere with its
-// analytic surface and a cube of rectangles are tried: the cube has corners, and its lights are chosen among six.
+// The furnace: inside a closed surface that emits radiance Le and reflects the share rho, every ray sees Le / (1 -
+// rho), and with at most K reflections Le (1 - rho^(K+1)) / (1 - rho), wherever it points and whatever the shape. A
+// sphere with its analytic surface and a cube of rectangles are tried: the cube has corners, and its lights are chosen
+// among six.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +26,7 @@ double radiance_of_orders(int c, int first, int last) {
 struct Furnace {
     std::string name;
     Scene scene;
-    double share_found;    ///< of photons that a gather of gather_radius accepts: integrating_sphere_test.cpp says why
+    double share_found;  ///< of photons that a gather of gather_radius accepts: integrating_sphere_test.cpp says why
 };
 
 std::vector<Furnace> furnaces() {
@@ -65,8 +66,8 @@ TEST(Furnace, EveryMethodSeesTheExactRadiance) {
                         }
                     }
                     const int first_gathered = direct == DirectMode::Photons ? 1 : 2;
-                    const std::string what = furnace.name + " " + integrator + ", direct " + name_of(direct) + ", at most " +
-                                             std::to_string(reflections) + ", ";
+                    const std::string what = furnace.name + " " + integrator + ", direct " + name_of(direct) +
+                                             ", at most " + std::to_string(reflections) + ", ";
                     for (int c = 0; c < 3; ++c) {
                         if (direct == DirectMode::Photons || reflections == 0)
                             EXPECT_EQ(SampleMean(direct_values[c]).mean, 0.0) << what;

@@ -1,11 +1,12 @@
-// The integrating sphere: whatever shines inside a diffuse sphere, the light it reflects is the same everywhere, and known
-// order by order. It holds photons, gathers and path tracer to exact numbers, and as its photons are uniform it is where
-// progressive photon mapping must be unbiased at every radius and alpha.
+// The integrating sphere: whatever shines inside a diffuse sphere, the light it reflects is the same everywhere, and
+// known order by order. It holds photons, gathers and path tracer to exact numbers, and as its photons are uniform it
+// is where progressive photon mapping must be unbiased at every radius and alpha.
 //
-// One thing is not flat about it. A photon at distance d from the gather point arrived from a point of the sphere; it is
-// refused when it comes from below the gather point's own horizon, which is when that point is nearer than d. After at least
-// one reflection that point is uniform on the sphere, so the share refused is d^2 / (4 R^2): averaged over a disc of radius
-// r the gather finds 1 - r^2 / (8 R^2) of the light. Photons from a source at the centre are never refused.
+// One thing is not flat about it. A photon at distance d from the gather point arrived from a point of the sphere; it
+// is refused when it comes from below the gather point's own horizon, which is when that point is nearer than d. After
+// at least one reflection that point is uniform on the sphere, so the share refused is d^2 / (4 R^2): averaged over a
+// disc of radius r the gather finds 1 - r^2 / (8 R^2) of the light. Photons from a source at the centre are never
+// refused.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +30,8 @@ SceneDescription describe(const VectorD& lamp, int resolution = 8) {
 
 /// Radiance after exactly `reflections` reflections; a central source where that is 1.
 double radiance_of_order(int c, int reflections) {
-    return std::pow(static_cast<double>(wall_colour[c]), reflections) * 4.0 * pi * lamp_intensity[c] / (pi * sphere_area);
+    return std::pow(static_cast<double>(wall_colour[c]), reflections) * 4.0 * pi * lamp_intensity[c] /
+           (pi * sphere_area);
 }
 
 /// Sum over orders from `first` to `last`, or to infinity for last = 0.
@@ -39,7 +41,8 @@ double radiance_of_orders(int c, int first, int last = 0) {
     return (radiance_of_order(c, first) - beyond) / (1.0 - rho);
 }
 
-/// Share of indirect photons that a gather of this radius finds (above): `moment` is the kernel's mean of s^2, 1/2 for the disc.
+/// Share of indirect photons that a gather of this radius finds (above): `moment` is the kernel's mean of s^2, 1/2 for
+/// the disc.
 double share_found(double radius, double moment = 0.5) {
     return 1.0 - moment * radius * radius / (4.0 * sphere_radius * sphere_radius);
 }
@@ -63,7 +66,8 @@ TEST(IntegratingSphere, PathTracingFindsTheExactRadiance) {
             gathered.add(mean_of(result.image, gathered_layer));
             if (lamp != VectorD(0.0)) continue;
             for (int c = 0; c < 3; ++c)
-                EXPECT_NEAR(mean_of(result.image, direct_layer)[c], radiance_of_order(c, 1), 1e-5 * radiance_of_order(c, 1));
+                EXPECT_NEAR(mean_of(result.image, direct_layer)[c], radiance_of_order(c, 1),
+                            1e-5 * radiance_of_order(c, 1));
         }
         for (int c = 0; c < 3; ++c) claims.mean_is(where, gathered.values[c], radiance_of_orders(c, 2), 0.01);
     }
@@ -74,7 +78,7 @@ TEST(IntegratingSphere, PhotonMethodsFindTheExactRadiance) {
         std::string name;
         MethodSettings settings;
     };
-    constexpr double radius = 0.25;    // a twelfth of the sphere's: 0.09% are refused
+    constexpr double radius = 0.25;  // a twelfth of the sphere's: 0.09% are refused
     std::vector<Method> methods{{"photonmapper", {.integrator = "photonmapper", .radius = radius}}};
     for (const double alpha : {0.3, 0.7, 1.0})
         for (const ScheduleName schedule : {ScheduleName::Hachisuka, ScheduleName::KnausZwicker})
@@ -103,8 +107,9 @@ TEST(IntegratingSphere, PhotonMethodsFindTheExactRadiance) {
                                 1e-5 * radiance_of_order(c, 1));
             }
             for (int c = 0; c < 3; ++c)
-                claims.means_are(method.name + (central ? ", central" : ", off centre") + ", channel " + std::to_string(c),
-                                 gathered.values[c], expected[c], 0.02);
+                claims.means_are(
+                    method.name + (central ? ", central" : ", off centre") + ", channel " + std::to_string(c),
+                    gathered.values[c], expected[c], 0.02);
         }
     }
 }
@@ -125,7 +130,8 @@ TEST(IntegratingSphere, DepthLimitsTheNumberOfReflections) {
                                             .photons_per_pass = 4000};
                 Channels totals;
                 for (std::uint64_t seed = 1; seed <= 24; ++seed)
-                    totals.add(mean_total(render(scene, method, {.passes = integrator == "path" ? 16u : 3u, .seed = seed}).image));
+                    totals.add(mean_total(
+                        render(scene, method, {.passes = integrator == "path" ? 16u : 3u, .seed = seed}).image));
                 for (int c = 0; c < 3; ++c) {
                     if (reflections == 0) {
                         EXPECT_EQ(SampleMean(totals.values[c]).mean, 0.0) << integrator;
@@ -173,10 +179,14 @@ TEST(IntegratingSphere, ProgressiveEstimateIsUnbiasedThoughMostPassesAreEmpty) {
 // The kernel's mean of s^2 over the disc: of the photons' share refused (at the top) and nothing else here.
 double second_moment(Kernel kernel) {
     switch (kernel) {
-        case Kernel::Disc: return 1.0 / 2.0;
-        case Kernel::Cone: return 3.0 / 10.0;
-        case Kernel::Epanechnikov: return 1.0 / 3.0;
-        case Kernel::Biweight: return 1.0 / 4.0;
+        case Kernel::Disc:
+            return 1.0 / 2.0;
+        case Kernel::Cone:
+            return 3.0 / 10.0;
+        case Kernel::Epanechnikov:
+            return 1.0 / 3.0;
+        case Kernel::Biweight:
+            return 1.0 / 4.0;
     }
     return 0.0;
 }
@@ -205,15 +215,15 @@ TEST(IntegratingSphere, EveryKernelIsUnbiasedOnUniformDensity) {
         }
 }
 
-// The k-th nearest photon sets the radius and carries nothing; then uniform photons are estimated without bias. Where fewer
-// than k are within the maximum radius, it is the gather of that radius.
+// The k-th nearest photon sets the radius and carries nothing; then uniform photons are estimated without bias. Where
+// fewer than k are within the maximum radius, it is the gather of that radius.
 TEST(IntegratingSphere, NearestPhotonsAreUnbiasedForEveryKernelAndSmallNumbers) {
     const Scene scene = build_scene(describe(VectorD(0.0)));
     constexpr int c = 1;
     ClaimFamily claims;
     struct Nearest {
         int k;
-        double max_radius;    // in shares of the sphere's
+        double max_radius;  // in shares of the sphere's
     };
     for (const auto& kernel : kernel_names)
         for (const Nearest& nearest : {Nearest{6, 0.5}, Nearest{40, 0.5}, Nearest{100'000, 0.2}}) {
@@ -256,19 +266,20 @@ TEST(IntegratingSphere, PathsLeaveTheExpectedNumberAndPowerOfPhotons) {
         std::vector<double> stored;
         Channels power;
         for (std::uint64_t seed = 1; seed <= 32; ++seed) {
-            const PhotonPass pass = trace_photons(scene, {.paths = 2000, .seed = seed, .store_direct = store_direct}, 1, 1);
+            const PhotonPass pass =
+                trace_photons(scene, {.paths = 2000, .seed = seed, .store_direct = store_direct}, 1, 1);
             stored.push_back(static_cast<double>(pass.photons.size()) / 2000.0);
             ColorD sum(0.0);
             for (const Photon& photon : pass.photons) sum += ColorD(photon.power) / 2000.0;
             power.add(sum);
         }
         const std::string what = store_direct ? "with direct, " : "without direct, ";
-        const double survival = 0.8f;    // the largest channel
+        const double survival = 0.8f;  // the largest channel
         const double first = store_direct ? 1.0 : survival;
         claims.mean_is(what + "number", stored, first / (1.0 - survival), 0.01);
         for (int c = 0; c < 3; ++c) {
             const double rho = wall_colour[c];
-            const double share = lamp_intensity[c] / mean_channel(lamp_intensity);    // of the emitted power, mean 1
+            const double share = lamp_intensity[c] / mean_channel(lamp_intensity);  // of the emitted power, mean 1
             claims.mean_is(what + "power", power.values[c], share * (store_direct ? 1.0 : rho) / (1.0 - rho), 0.01);
         }
     }

@@ -1,6 +1,6 @@
-// Lights are chosen by power, so a dim light close to a receiver is nearly never chosen there and yet may be most of its
-// light. The estimate stays unbiased: the path tracer finds such a light by its own directions, and where powers are a hundred
-// to one plain sampling shows the same.
+// Lights are chosen by power, so a dim light close to a receiver is nearly never chosen there and yet may be most of
+// its light. The estimate stays unbiased: the path tracer finds such a light by its own directions, and where powers
+// are a hundred to one plain sampling shows the same.
 
 #include <gtest/gtest.h>
 
@@ -13,20 +13,22 @@ namespace {
 
 const Color floor_colour(0.6f);
 
-// The dim disc, as wide as it is high above the origin, fills half of the sky's cosine; the bright sphere has a million times
-// its power. Radiances are chosen so that each gives pi / 2 of irradiance, to the whole or a part of the channels.
+// The dim disc, as wide as it is high above the origin, fills half of the sky's cosine; the bright sphere has a million
+// times its power. Radiances are chosen so that each gives pi / 2 of irradiance, to the whole or a part of the
+// channels.
 TEST(LightChoice, PathTracingIsUnbiasedWithPowersAMillionToOne) {
     constexpr double height = 0.02;
     constexpr double distance = 8.0;
     constexpr double ball_radius = 1.0;
-    const double inclination = pi / 3.0;    // the disc hides less than 45 degrees from the normal
+    const double inclination = pi / 3.0;  // the disc hides less than 45 degrees from the normal
     const ColorD dim(1.0, 0.5, 0.0);
     // pi^2 a^2 Le times a million = 4 pi^2 A^2 Lb
     const double bright = 1e6 * height * height * mean_channel(dim) / (4.0 * ball_radius * ball_radius);
     SceneDescription description = floor_seen_at_origin(floor_colour, 20.0);
     description.shapes.push_back(disk(VectorD(0.0, height, 0.0), VectorD(0, -1, 0), height, 1, dim));
-    description.shapes.push_back(sphere(VectorD(distance * std::sin(inclination), distance * std::cos(inclination), 0.0),
-                                        ball_radius, false, 1, ColorD(bright)));
+    description.shapes.push_back(
+        sphere(VectorD(distance * std::sin(inclination), distance * std::cos(inclination), 0.0), ball_radius, false, 1,
+               ColorD(bright)));
     description.camera = look_at(VectorD(-0.1, 0.04, 0.03), VectorD(0.0));
     const Scene scene = build_scene(description);
     EXPECT_NEAR(scene.emitters[0].choice_probability, 1e-6, 1e-9);
@@ -40,8 +42,10 @@ TEST(LightChoice, PathTracingIsUnbiasedWithPowersAMillionToOne) {
     ClaimFamily claims;
     for (int c = 0; c < 3; ++c) {
         const double from_disc = pi * dim[c] * 0.5;
-        const double from_ball = pi * bright * (ball_radius / distance) * (ball_radius / distance) * std::cos(inclination);
-        claims.mean_is("channel " + std::to_string(c), radiance[c], floor_colour[c] / pi * (from_disc + from_ball), 0.01);
+        const double from_ball =
+            pi * bright * (ball_radius / distance) * (ball_radius / distance) * std::cos(inclination);
+        claims.mean_is("channel " + std::to_string(c), radiance[c], floor_colour[c] / pi * (from_disc + from_ball),
+                       0.01);
     }
 }
 

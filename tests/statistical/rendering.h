@@ -17,13 +17,13 @@ struct RenderOptions {
     int threads = 1;
     int samples_per_pixel = 1;
     RandomPurpose path_purpose = RandomPurpose::CameraPaths;
-    bool estimate_every_pass = false;    ///< ask for the image after every pass, not only after the last
+    bool estimate_every_pass = false;  ///< ask for the image after every pass, not only after the last
 };
 
 struct Rendering {
     Image image;
     IntegratorReport report;
-    std::vector<double> radii;    ///< scene units, mean over hit points, before each pass; empty for `path`
+    std::vector<double> radii;  ///< scene units, mean over hit points, before each pass; empty for `path`
 };
 
 inline const StageListener no_listener = [](Stage) {};
@@ -44,7 +44,8 @@ inline Rendering render(const Scene& scene, const HitPoints& hit_points, const M
     for (std::uint64_t pass = 1; pass <= options.passes; ++pass) {
         if (const auto radius = integrator->report().radius_mean) result.radii.push_back(*radius);
         const PhotonPass photons =
-            needs_photons ? trace_photons(scene, photon_settings(method, options.seed), pass, options.threads) : PhotonPass{};
+            needs_photons ? trace_photons(scene, photon_settings(method, options.seed), pass, options.threads)
+                          : PhotonPass{};
         integrator->run_pass(pass, photons, no_listener);
         if (options.estimate_every_pass) result.image = integrator->estimate(no_listener);
     }

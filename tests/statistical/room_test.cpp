@@ -1,10 +1,12 @@
-// A room where nothing is known in closed form: photon methods against the path tracer, layer by layer and place by place.
+// A room where nothing is known in closed form: photon methods against the path tracer, layer by layer and place by
+// place.
 //
-// Compared are blocks of 4 x 4 pixels whose hit points lie in one plane, further than the gather radius from every edge and
-// from every other surface: there the only bias is that of a smooth irradiance, r^2 laplacian(E) / 8 of it. Indirect light
-// varies over the room's half width 1, so the laplacian is of the order of 10 E at most; at r = 0.05 this makes 0.3% of bias,
-// which is allowed for. Direct light has shadows: with photons carrying it, only blocks that see the whole lamp are compared,
-// whose laplacian is of the order of E / (distance to the lamp)^2 < 3 E: less than 0.1%.
+// Compared are blocks of 4 x 4 pixels whose hit points lie in one plane, further than the gather radius from every edge
+// and from every other surface: there the only bias is that of a smooth irradiance, r^2 laplacian(E) / 8 of it.
+// Indirect light varies over the room's half width 1, so the laplacian is of the order of 10 E at most; at r = 0.05
+// this makes 0.3% of bias, which is allowed for. Direct light has shadows: with photons carrying it, only blocks that
+// see the whole lamp are compared, whose laplacian is of the order of E / (distance to the lamp)^2 < 3 E: less than
+// 0.1%.
 
 #include <gtest/gtest.h>
 
@@ -43,7 +45,8 @@ double distance_to_edge(const MeshDescription& rectangle, const VectorD& point) 
     return std::min({u, first.length() - u, v, second.length() - v});
 }
 
-/// True when every point of the lamp, tried on a grid a little larger than it, is visible from all around the hit point.
+/// True when every point of the lamp, tried on a grid a little larger than it, is visible from all around the hit
+/// point.
 bool sees_whole_lamp(const Scene& scene, const HitPoint& point, const MeshDescription& lamp) {
     const Frame frame = make_frame(point.normal);
     const float margin = static_cast<float>(gather_radius / scene.unit_length);
@@ -54,7 +57,8 @@ bool sees_whole_lamp(const Scene& scene, const HitPoint& point, const MeshDescri
             for (int i = 0; i <= 4; ++i)
                 for (int j = 0; j <= 4; ++j) {
                     const VectorD on_lamp = lamp.positions[0] + (lamp.positions[1] - lamp.positions[0]) * (i / 4.0) +
-                                            (lamp.positions[3] - lamp.positions[0]) * (j / 4.0) - VectorD(0.0, 1e-3, 0.0);
+                                            (lamp.positions[3] - lamp.positions[0]) * (j / 4.0) -
+                                            VectorD(0.0, 1e-3, 0.0);
                     const Vector to((on_lamp - scene.centre) / scene.unit_length);
                     if (point.normal.dot(to - from) <= 0.0f || is_occluded(scene, from, to)) return false;
                 }
@@ -67,7 +71,8 @@ struct Block {
     bool sees_lamp;
 };
 
-std::vector<Block> comparable_blocks(const SceneDescription& description, const Scene& scene, const HitPoints& hit_points) {
+std::vector<Block> comparable_blocks(const SceneDescription& description, const Scene& scene,
+                                     const HitPoints& hit_points) {
     const MeshDescription* lamp = nullptr;
     for (const ShapeDescription& shape : description.shapes)
         if (shape.radiance) lamp = &std::get<MeshDescription>(shape.geometry);
@@ -119,11 +124,12 @@ void add_values(BlockValues& values, const std::vector<Block>& blocks, const Ima
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         double sum = 0.0;
         for (const std::string_view layer : layers)
-            for (const std::uint32_t pixel : blocks[i].pixels) sum += static_cast<double>((*image.find(layer))[pixel].y);
+            for (const std::uint32_t pixel : blocks[i].pixels)
+                sum += static_cast<double>((*image.find(layer))[pixel].y);
         values[i].push_back(sum / static_cast<double>(blocks[i].pixels.size()));
         all += values[i].back();
     }
-    values.back().push_back(all / static_cast<double>(blocks.size()));    // last: the mean of all blocks
+    values.back().push_back(all / static_cast<double>(blocks.size()));  // last: the mean of all blocks
 }
 
 class Room : public testing::Test {
@@ -136,9 +142,9 @@ protected:
         references_ = new std::vector<Image>;
         for (std::uint64_t seed = 1; seed <= seeds; ++seed)
             for (const RandomPurpose half : {RandomPurpose::ReferenceHalfA, RandomPurpose::ReferenceHalfB})
-                references_->push_back(
-                    render(*scene_, *hit_points_, {.integrator = "path"}, {.passes = 12, .seed = seed, .path_purpose = half})
-                        .image);
+                references_->push_back(render(*scene_, *hit_points_, {.integrator = "path"},
+                                              {.passes = 12, .seed = seed, .path_purpose = half})
+                                           .image);
     }
     static void TearDownTestSuite() {
         delete references_;
@@ -159,8 +165,8 @@ protected:
                        with_whole_lamp_only ? std::vector{direct_layer, gathered_layer} : layers);
         for (const Image& image : images) add_values(values, blocks, image, layers);
         for (std::size_t i = 0; i < blocks.size(); ++i)
-            claims.means_agree(what + ", block at pixel " + std::to_string(blocks[i].pixels[0]), values[i], reference[i], 0.07,
-                               bias);
+            claims.means_agree(what + ", block at pixel " + std::to_string(blocks[i].pixels[0]), values[i],
+                               reference[i], 0.07, bias);
         claims.means_agree(what + ", all blocks", values.back(), reference.back(), 0.01, bias);
     }
 
@@ -196,7 +202,8 @@ TEST_F(Room, HalvesOfAReferenceShareNoRandomNumbers) {
 
 TEST_F(Room, ProgressivePhotonMappingAgreesWithPathTracingLayerByLayer) {
     ClaimFamily claims;
-    const auto images = images_of({.alpha = 0.7, .radius = gather_radius, .direct_samples = 4, .photons_per_pass = 10'000}, 4);
+    const auto images =
+        images_of({.alpha = 0.7, .radius = gather_radius, .direct_samples = 4, .photons_per_pass = 10'000}, 4);
     expect_agreement(claims, "direct", images, {direct_layer}, false, 0.0);
     expect_agreement(claims, "gathered", images, {gathered_layer}, false, smooth_bias);
 }
@@ -208,8 +215,9 @@ TEST_F(Room, PhotonMappingAgreesWithPathTracing) {
     expect_agreement(claims, "gathered", images, {gathered_layer}, false, smooth_bias);
 }
 
-// With 120,000 paths some 7000 indirect photons lie on a unit of area, so the nearest 12 are within 0.025: the maximum radius,
-// which keeps the search inside the block's clear disc, is seldom reached, and counting the k-th photon would add 9%.
+// With 120,000 paths some 7000 indirect photons lie on a unit of area, so the nearest 12 are within 0.025: the maximum
+// radius, which keeps the search inside the block's clear disc, is seldom reached, and counting the k-th photon would
+// add 9%.
 TEST_F(Room, NearestPhotonsAgreeWithPathTracing) {
     ClaimFamily claims;
     const auto images = images_of({.integrator = "photonmapper",

@@ -1,7 +1,7 @@
 // Scenes whose light is known in closed form, written directly as descriptions, and the pieces they are made of.
 //
-// Lengths are in scene units and no scene is one unit large, so that a forgotten conversion to the unit box shows. A camera
-// of 1 x 1 pixels has one hit point: exactly where its view axis meets the surface.
+// Lengths are in scene units and no scene is one unit large, so that a forgotten conversion to the unit box shows. A
+// camera of 1 x 1 pixels has one hit point: exactly where its view axis meets the surface.
 
 #pragma once
 
@@ -22,7 +22,8 @@ inline MeshDescription parallelogram(const VectorD& corner, const VectorD& along
             .triangles = {{0, 1, 2}, {0, 2, 3}}};
 }
 
-inline ShapeDescription shape(MeshDescription mesh, std::size_t material, std::optional<ColorD> radiance = std::nullopt) {
+inline ShapeDescription shape(MeshDescription mesh, std::size_t material,
+                              std::optional<ColorD> radiance = std::nullopt) {
     return {std::move(mesh), material, radiance, "test"};
 }
 
@@ -47,8 +48,8 @@ inline CameraDescription look_at(const VectorD& from, const VectorD& target, int
     const VectorD left = helper.cross(forward).normalized();
     const VectorD up = forward.cross(left);
     CameraDescription camera;
-    camera.to_world = Matrix(left.x, left.y, left.z, 0, up.x, up.y, up.z, 0, forward.x, forward.y, forward.z, 0, from.x, from.y,
-                             from.z, 1);
+    camera.to_world = Matrix(left.x, left.y, left.z, 0, up.x, up.y, up.z, 0, forward.x, forward.y, forward.z, 0, from.x,
+                             from.y, from.z, 1);
     camera.fov_x = fov_x;
     camera.width = width;
     camera.height = height;
@@ -105,13 +106,13 @@ inline SceneDescription room(int width = 48, int height = 48) {
     const VectorD y(0, 2, 0);
     const VectorD z(0, 0, 2);
     const VectorD corner(-1.0);
-    scene.shapes = {shape(parallelogram(corner, z, x), 0),                     // floor
-                    shape(parallelogram(corner + y, x, z), 0),                 // ceiling
-                    shape(parallelogram(corner + z, y, x), 0),                 // back wall
-                    shape(parallelogram(corner, y, z), 1),                     // wall at -x
-                    shape(parallelogram(corner + x, z, y), 2)};                // wall at +x
-    scene.shapes.push_back(
-        shape(parallelogram(VectorD(-0.4, 0.95, -0.3), VectorD(0.8, 0, 0), VectorD(0, 0, 0.6)), 4, ColorD(8.0, 6.0, 3.0)));
+    scene.shapes = {shape(parallelogram(corner, z, x), 0),       // floor
+                    shape(parallelogram(corner + y, x, z), 0),   // ceiling
+                    shape(parallelogram(corner + z, y, x), 0),   // back wall
+                    shape(parallelogram(corner, y, z), 1),       // wall at -x
+                    shape(parallelogram(corner + x, z, y), 2)};  // wall at +x
+    scene.shapes.push_back(shape(parallelogram(VectorD(-0.4, 0.95, -0.3), VectorD(0.8, 0, 0), VectorD(0, 0, 0.6)), 4,
+                                 ColorD(8.0, 6.0, 3.0)));
     // A block of 0.6 x 0.7 x 0.6 in front of the wall at +x: its top and the sides that can be seen or lit.
     const VectorD block(0.1, -1.0, -0.2);
     const VectorD wide(0.6, 0, 0);

@@ -1,6 +1,6 @@
-// Interpolated normals that differ from the surface's own make a BSDF's adjoint another function, so photons need factors
-// that camera paths do not: one at each reflection and one at the gather (theory.md, section 5; Veach 1996). Flat walls whose
-// vertex normals all lean the same way show either factor missing.
+// Interpolated normals that differ from the surface's own make a BSDF's adjoint another function, so photons need
+// factors that camera paths do not: one at each reflection and one at the gather (theory.md, section 5; Veach 1996).
+// Flat walls whose vertex normals all lean the same way show either factor missing.
 
 #include <gtest/gtest.h>
 
@@ -21,9 +21,9 @@ void lean_normals(SceneDescription& scene, double angle) {
     }
 }
 
-// With light from straight above at height h the shaded floor reflects rho / pi I cos(lean) / h^2: photons land with the
-// density of the true floor and are weighted by the ratio of cosines. Over the disc that ratio is
-// cos(lean) + sin(lean) x / h, whose second term averages to nothing.
+// With light from straight above at height h the shaded floor reflects rho / pi I cos(lean) / h^2: photons land with
+// the density of the true floor and are weighted by the ratio of cosines. Over the disc that ratio is cos(lean) +
+// sin(lean) x / h, whose second term averages to nothing.
 TEST(ShadingNormals, GatheredDirectLightIsThatOfTheShadingNormal) {
     constexpr double height = 2.0;
     constexpr double radius = 0.4;
@@ -41,7 +41,8 @@ TEST(ShadingNormals, GatheredDirectLightIsThatOfTheShadingNormal) {
     std::vector<double> radiance;
     for (std::uint64_t seed = 1; seed <= 32; ++seed)
         radiance.push_back(
-            mean_of(render(scene, {.alpha = 1.0, .radius = radius, .direct = DirectMode::Photons, .photons_per_pass = 60'000},
+            mean_of(render(scene,
+                           {.alpha = 1.0, .radius = radius, .direct = DirectMode::Photons, .photons_per_pass = 60'000},
                            {.seed = seed})
                         .image,
                     gathered_layer)
@@ -51,8 +52,8 @@ TEST(ShadingNormals, GatheredDirectLightIsThatOfTheShadingNormal) {
     claims.mean_is("photons", radiance, 0.6 / pi * std::cos(lean) * 2.0 / (q * (q + height)), 0.01);
 }
 
-// Many reflections between walls whose normals all lean. The irradiance varies over the cube's half width 1: with a radius of
-// 0.1 its bias stays below 10 r^2 / 8, a hundredth, which is allowed for; each factor changes more than that.
+// Many reflections between walls whose normals all lean. The irradiance varies over the cube's half width 1: with a
+// radius of 0.1 its bias stays below 10 r^2 / 8, a hundredth, which is allowed for; each factor changes more than that.
 TEST(ShadingNormals, PhotonsAndCameraPathsAgreeAfterReflections) {
     SceneDescription description = hollow_cube(Color(0.7f), std::nullopt);
     lean_normals(description, 0.6);
@@ -61,9 +62,11 @@ TEST(ShadingNormals, PhotonsAndCameraPathsAgreeAfterReflections) {
     std::vector<double> paths;
     std::vector<double> photons;
     for (std::uint64_t seed = 1; seed <= 32; ++seed) {
-        paths.push_back(mean_of(render(scene, {.integrator = "path"}, {.passes = 800, .seed = seed}).image, gathered_layer).x);
+        paths.push_back(
+            mean_of(render(scene, {.integrator = "path"}, {.passes = 800, .seed = seed}).image, gathered_layer).x);
         photons.push_back(
-            mean_of(render(scene, {.radius = 0.1, .photons_per_pass = 20'000}, {.passes = 4, .seed = seed}).image, gathered_layer)
+            mean_of(render(scene, {.radius = 0.1, .photons_per_pass = 20'000}, {.passes = 4, .seed = seed}).image,
+                    gathered_layer)
                 .x);
     }
     ClaimFamily claims;

@@ -2,8 +2,8 @@
 // test, whose variance comes from the values themselves, and all claims of one test share a significance of 1e-4 by
 // Bonferroni: a right program fails one seed in ten thousand a test, and the seeds are fixed.
 //
-// A test that cannot see an error proves nothing, so every claim also states the largest relative standard error with which
-// it counts as having looked.
+// A test that cannot see an error proves nothing, so every claim also states the largest relative standard error with
+// which it counts as having looked.
 //
 // [Abramowitz & Stegun, 26.7.3 and 26.7.4: Student's distribution for whole degrees of freedom]
 
@@ -42,7 +42,7 @@ inline double student_p_value(double t, int degrees_of_freedom) {
 /// Mean of independent values, and how well they know it.
 struct SampleMean {
     double mean = 0.0;
-    double squared_error = 0.0;    ///< of the mean: sample variance / count
+    double squared_error = 0.0;  ///< of the mean: sample variance / count
     int degrees_of_freedom = 0;
 
     explicit SampleMean(const std::vector<double>& values) {
@@ -75,8 +75,8 @@ public:
         mean_is(what, shifted, common, largest_error);
     }
 
-    /// Two independent samples have the same expectation, but for a difference of at most `bias` relative to the second.
-    /// [Welch 1947, for samples of different variance]
+    /// Two independent samples have the same expectation, but for a difference of at most `bias` relative to the
+    /// second. [Welch 1947, for samples of different variance]
     void means_agree(const std::string& what, const std::vector<double>& first, const std::vector<double>& second,
                      double largest_error, double bias = 0.0) {
         const SampleMean a(first);
@@ -86,7 +86,8 @@ public:
                                (a.squared_error * a.squared_error / a.degrees_of_freedom +
                                 b.squared_error * b.squared_error / b.degrees_of_freedom);
         add(what, a.mean, b.mean, std::sqrt(squared_error),
-            std::isfinite(freedom) ? std::max(1, static_cast<int>(freedom)) : a.degrees_of_freedom, largest_error, bias);
+            std::isfinite(freedom) ? std::max(1, static_cast<int>(freedom)) : a.degrees_of_freedom, largest_error,
+            bias);
     }
 
     ~ClaimFamily() {
@@ -108,7 +109,8 @@ private:
         const double difference =
             std::max(0.0, std::abs(mean - expected) - (rounding_allowance + bias) * std::abs(expected));
         // NaN must not pass: only a difference that compares as 0 is certain.
-        const double t = std::abs(mean - expected) <= (rounding_allowance + bias) * std::abs(expected) ? 0.0 : difference / error;
+        const double t =
+            std::abs(mean - expected) <= (rounding_allowance + bias) * std::abs(expected) ? 0.0 : difference / error;
         const std::string numbers = what + ": mean " + std::to_string(mean) + ", expected " + std::to_string(expected) +
                                     ", standard error " + std::to_string(error);
         claims_.push_back({numbers, std::isnan(mean) ? 0.0 : student_p_value(t, degrees_of_freedom)});

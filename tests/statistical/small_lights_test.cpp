@@ -1,5 +1,6 @@
-// A floor under a point light, a disc and a sphere: irradiance in closed form, and for photon mapping even its bias, since
-// the mean irradiance over the gather disc is known at any radius (theory.md, section 5). Every method is held to it.
+// A floor under a point light, a disc and a sphere: irradiance in closed form, and for photon mapping even its bias,
+// since the mean irradiance over the gather disc is known at any radius (theory.md, section 5). Every method is held to
+// it.
 
 #include <gtest/gtest.h>
 
@@ -50,8 +51,8 @@ const double gather_radii[] = {0.2 * lamp_height, 0.7 * lamp_height, 1.5 * lamp_
 TEST(PointLightOverFloor, SampledDirectLightIsExact) {
     const Scene scene = floor_under_lamp();
     for (const char* integrator : {"ppm", "photonmapper", "path"}) {
-        const Rendering result = render(scene, {.integrator = integrator, .direct_samples = 3, .photons_per_pass = 10},
-                                        {.passes = 3});
+        const Rendering result =
+            render(scene, {.integrator = integrator, .direct_samples = 3, .photons_per_pass = 10}, {.passes = 3});
         for (int c = 0; c < 3; ++c) {
             const double exact = floor_colour[c] / pi * lamp_intensity[c] / (lamp_height * lamp_height);
             EXPECT_NEAR(mean_of(result.image, direct_layer)[c], exact, 2e-6 * exact) << integrator << " channel " << c;
@@ -81,15 +82,16 @@ TEST(PointLightOverFloor, PhotonMappingHasExactlyTheBiasOfItsDisc) {
                                         .radius = radius,
                                         .direct = DirectMode::Photons,
                                         .photons_per_pass = 2000};
-            radiance.push_back(mean_of(render(scene, method, {.passes = 3, .seed = seed}).image, gathered_layer)[channel]);
+            radiance.push_back(
+                mean_of(render(scene, method, {.passes = 3, .seed = seed}).image, gathered_layer)[channel]);
         }
         claims.mean_is("radius " + std::to_string(radius), radiance,
                        floor_reflectance / pi * lamp_irradiance_over_disc(radius), 0.02);
     }
 }
 
-// A pass's estimate has, given the radius before it, the expectation of that disc; so the run's estimate minus the mean of
-// these over its own radii has expectation 0, though Hachisuka's radii depend on the photons.
+// A pass's estimate has, given the radius before it, the expectation of that disc; so the run's estimate minus the mean
+// of these over its own radii has expectation 0, though Hachisuka's radii depend on the photons.
 TEST(PointLightOverFloor, ProgressivePhotonMappingIsUnbiasedOverItsOwnRadii) {
     const Scene scene = floor_under_lamp();
     ClaimFamily claims;
@@ -109,12 +111,14 @@ TEST(PointLightOverFloor, ProgressivePhotonMappingIsUnbiasedOverItsOwnRadii) {
                     radiance.push_back(mean_of(result.image, gathered_layer)[channel]);
                     expected.push_back(floor_reflectance / pi * mean_over(result.radii, lamp_irradiance_over_disc));
                 }
-                claims.means_are(name_of(schedule) + " alpha " + std::to_string(alpha) + " radius " + std::to_string(radius),
-                                 radiance, expected, 0.06);
+                claims.means_are(
+                    name_of(schedule) + " alpha " + std::to_string(alpha) + " radius " + std::to_string(radius),
+                    radiance, expected, 0.06);
             }
 }
 
-/// Sampled direct light by ppm and path, each over 32 seeds, and photons over a disc; `irradiance` is that of channel 1.
+/// Sampled direct light by ppm and path, each over 32 seeds, and photons over a disc; `irradiance` is that of
+/// channel 1.
 template <typename Irradiance>
 void expect_irradiance(ClaimFamily& claims, const std::string& light, const Scene& scene, const Irradiance& irradiance,
                        double photon_radius, std::uint64_t photons) {
@@ -122,10 +126,11 @@ void expect_irradiance(ClaimFamily& claims, const std::string& light, const Scen
     for (const char* integrator : {"ppm", "path"}) {
         std::vector<double> radiance;
         for (std::uint64_t seed = 1; seed <= 32; ++seed)
-            radiance.push_back(mean_of(render(scene, {.integrator = integrator, .direct_samples = 4, .photons_per_pass = 1},
-                                              {.passes = 100, .seed = seed})
-                                           .image,
-                                       direct_layer)[channel]);
+            radiance.push_back(
+                mean_of(render(scene, {.integrator = integrator, .direct_samples = 4, .photons_per_pass = 1},
+                               {.passes = 100, .seed = seed})
+                            .image,
+                        direct_layer)[channel]);
         claims.mean_is(light + ", direct by " + integrator, radiance, at_origin, 0.015);
     }
     std::vector<double> radiance;
@@ -138,7 +143,8 @@ void expect_irradiance(ClaimFamily& claims, const std::string& light, const Scen
                                           {.seed = seed})
                                        .image,
                                    gathered_layer)[channel]);
-    claims.mean_is(light + ", photons", radiance, floor_reflectance / pi * mean_over_disc(photon_radius, irradiance), 0.02);
+    claims.mean_is(light + ", photons", radiance, floor_reflectance / pi * mean_over_disc(photon_radius, irradiance),
+                   0.02);
 }
 
 TEST(DiscLightOverFloor, MatchesTheClosedFormOnItsAxis) {
@@ -158,8 +164,8 @@ TEST(DiscLightOverFloor, MatchesTheClosedFormOnItsAxis) {
         // Factors", B-13]
         const auto irradiance = [&](double x, double z) {
             const double sum = x * x + z * z + height * height;
-            const double root = std::sqrt((sum + radius * radius) * (sum + radius * radius) -
-                                          4.0 * radius * radius * (x * x + z * z));
+            const double root =
+                std::sqrt((sum + radius * radius) * (sum + radius * radius) - 4.0 * radius * radius * (x * x + z * z));
             return pi * radiance[channel] / 2.0 * (1.0 - (sum - radius * radius) / root);
         };
         const double on_axis = pi * radiance[channel] * radius * radius / (radius * radius + height * height);

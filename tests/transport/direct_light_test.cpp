@@ -1,5 +1,6 @@
-// Direct light where one sample is already exact: a point light has nothing to choose, and inside a uniformly emitting sphere
-// every point on it contributes alike. What is left are the cosine, the square of the distance, sides and shadows.
+// Direct light where one sample is already exact: a point light has nothing to choose, and inside a uniformly emitting
+// sphere every point on it contributes alike. What is left are the cosine, the square of the distance, sides and
+// shadows.
 
 #include <gtest/gtest.h>
 
@@ -23,8 +24,8 @@ TEST(DirectLight, OfAPointLightHasItsCosineAndSquaredDistance) {
     for (const double angle : {0.0, 0.5, 1.0, 1.4})
         for (const double distance : {0.1, 1.0, 20.0}) {
             SceneDescription description = floor_seen_at_origin(Color(0.2f, 0.5f, 0.8f));
-            description.point_lights = {
-                point_light(VectorD(distance * std::sin(angle), distance * std::cos(angle), 0.0), ColorD(1.0, 2.0, 3.0))};
+            description.point_lights = {point_light(
+                VectorD(distance * std::sin(angle), distance * std::cos(angle), 0.0), ColorD(1.0, 2.0, 3.0))};
             const ColorD radiance = sample_once(build_scene(description));
             for (int c = 0; c < 3; ++c) {
                 const double exact = (0.2 + 0.3 * c) / pi * (c + 1.0) * std::cos(angle) / (distance * distance);
@@ -70,8 +71,8 @@ TEST(DirectLight, InsideAUniformSphereIsTheSameForEverySample) {
     }
 }
 
-// An outward sphere is sampled inside its visible cone: f Le cos / density varies only with the cosine, so a small sphere
-// overhead is nearly exact in one sample: cos theta >= sqrt(1 - (a/D)^2).
+// An outward sphere is sampled inside its visible cone: f Le cos / density varies only with the cosine, so a small
+// sphere overhead is nearly exact in one sample: cos theta >= sqrt(1 - (a/D)^2).
 TEST(DirectLight, OfASmallSphereOverheadIsNearlyExactInOneSample) {
     SceneDescription description = floor_seen_at_origin(Color(0.5f));
     description.shapes.push_back(sphere(VectorD(0.0, 2.0, 0.0), 0.02, false, 1, ColorD(100.0)));

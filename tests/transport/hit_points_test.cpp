@@ -79,7 +79,7 @@ TEST(HitPoints, SeeALightFromItsFrontAlone) {
         const HitPoints hit_points = trace_hit_points(build_scene(description), 4, 1);
         for (const ColorD& emission : hit_points.emission)
             EXPECT_EQ(emission, side > 0.0 ? ColorD(1.0, 2.0, 3.0) : ColorD(0.0));
-        EXPECT_TRUE(hit_points.points.empty());    // black: nothing to gather
+        EXPECT_TRUE(hit_points.points.empty());  // black: nothing to gather
     }
 }
 
@@ -97,8 +97,7 @@ TEST(HitPoints, AreNoneBehindAOneSidedSurfaceOrInTheVoid) {
 
 TEST(HitPoints, RefuseANumberOfSamplesThatIsNoSquare) {
     const Scene scene = build_scene(floor_from_above(2, 2));
-    for (const int samples : {0, -1, 2, 3, 5, 8})
-        try {
+    for (const int samples : {0, -1, 2, 3, 5, 8}) try {
             trace_hit_points(scene, samples, 1);
             ADD_FAILURE() << samples;
         } catch (const InputError& error) {

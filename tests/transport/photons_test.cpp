@@ -1,5 +1,5 @@
-// The photon pass, photon by photon: what is stored, with how many edges, on which side, and that neither threads nor units
-// of light nor empty scenes can change or stop it. Its energy is in tests/statistical.
+// The photon pass, photon by photon: what is stored, with how many edges, on which side, and that neither threads nor
+// units of light nor empty scenes can change or stop it. Its energy is in tests/statistical.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,8 @@ namespace {
 bool same_bits(const PhotonPass& a, const PhotonPass& b) {
     return a.photons.size() == b.photons.size() && a.paths_emitted == b.paths_emitted && a.paths_cut == b.paths_cut &&
            a.power_cut == b.power_cut && a.nonfinite == b.nonfinite &&
-           (a.photons.empty() || std::memcmp(a.photons.data(), b.photons.data(), a.photons.size() * sizeof(Photon)) == 0);
+           (a.photons.empty() ||
+            std::memcmp(a.photons.data(), b.photons.data(), a.photons.size() * sizeof(Photon)) == 0);
 }
 
 TEST(PhotonPass, HasTheSameBitsOnAnyNumberOfThreads) {
@@ -23,7 +24,8 @@ TEST(PhotonPass, HasTheSameBitsOnAnyNumberOfThreads) {
     const PhotonSettings settings{.paths = 10'001, .seed = 7, .store_direct = true};
     const PhotonPass one = trace_photons(scene, settings, 3, 1);
     EXPECT_GT(one.photons.size(), 10'000u);
-    for (const int threads : {2, 3, 8}) EXPECT_TRUE(same_bits(one, trace_photons(scene, settings, 3, threads))) << threads;
+    for (const int threads : {2, 3, 8})
+        EXPECT_TRUE(same_bits(one, trace_photons(scene, settings, 3, threads))) << threads;
 }
 
 TEST(PhotonPass, DiffersByPassAndBySeed) {
@@ -75,7 +77,7 @@ TEST(PhotonPass, EdgesStayBelowTheLimitAndStartWhereDirectLightIsStored) {
             for (std::uint32_t edges = 0; edges < of_edges.size(); ++edges)
                 EXPECT_EQ(of_edges[edges] > 0, edges >= first && edges <= last)
                     << edges << " edges with max_depth " << max_depth << (store_direct ? ", direct" : "");
-            EXPECT_EQ(pass.paths_cut, 0u);    // a limit that was asked for cuts nothing
+            EXPECT_EQ(pass.paths_cut, 0u);  // a limit that was asked for cuts nothing
         }
 }
 
@@ -97,7 +99,7 @@ TEST(PhotonPass, LeavesNothingOnTheBackOfAOneSidedSurface) {
         const PhotonPass pass = trace_photons(build_scene(description), {.paths = 2000, .store_direct = true}, 1, 1);
         EXPECT_EQ(!pass.photons.empty(), two_sided);
         for (const Photon& photon : pass.photons) {
-            EXPECT_EQ(photon.normal, Vector(0, -1, 0));    // the side on which it arrived
+            EXPECT_EQ(photon.normal, Vector(0, -1, 0));  // the side on which it arrived
             EXPECT_LT(photon.incoming.y, 0.0f);
         }
     }
@@ -114,7 +116,7 @@ TEST(PhotonPass, PhotonsLieOnTheirSurfaceAndPointBackToWhereTheyCameFrom) {
         const VectorD position = VectorD(photon.position) * scene.unit_length + scene.centre;
         EXPECT_NEAR(position.y, 0.0, 1e-5);
         EXPECT_LT(((lamp - position).normalized() - VectorD(photon.incoming)).length(), 1e-5);
-        EXPECT_EQ(photon.edges, 1u);    // the floor alone sends nothing back to itself
+        EXPECT_EQ(photon.edges, 1u);  // the floor alone sends nothing back to itself
         // Relative to the mean of the channels, 3.
         EXPECT_NEAR(photon.power.x, 1.0 / 3.0, 1e-6);
         EXPECT_NEAR(photon.power.y, 2.0 / 3.0, 1e-6);

@@ -1,11 +1,11 @@
-#include "experiment/hash.h"
+#include "core/hash.h"
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
 #include <fmt/format.h>
 
-#include "experiment/files.h"
+#include "core/files.h"
 
 namespace photonlab {
 
