@@ -11,7 +11,6 @@ namespace {
 
 constexpr std::uint32_t roulette_after = 3;      // reflections: most paths of a bright scene matter until then
 constexpr float highest_survival = 0.99f;
-constexpr std::uint32_t edge_cap = 10'000;
 
 /// What one path found: light reflected once at the hit point, and light reflected there after other reflections.
 struct PathSample {
@@ -25,7 +24,7 @@ PathSample trace_path(const Scene& scene, const HitPoint& point, int max_depth, 
     Vector outgoing = point.outgoing;
     Color throughput(1.0f);
 
-    for (std::uint32_t reflections = 1; point.camera_edges + reflections < edge_cap; ++reflections) {
+    for (std::uint32_t reflections = 1;; ++reflections) {
         // Light found from here has one edge more than the path so far: camera_edges + reflections in all.
         if (!depth_allows(max_depth, point.camera_edges + reflections)) break;
         ColorD& layer = reflections == 1 ? result.direct : result.gathered;

@@ -1,5 +1,5 @@
-// Embree 3 (Debian 12) or 4 (Debian 13). What photonlab uses differs only in the header's name and in how a query takes its
-// options.
+// Embree 3 (Debian 12) or 4 (Debian 13). What photonlab uses differs only in the header's name and in how a query takes
+// its options.
 
 #pragma once
 

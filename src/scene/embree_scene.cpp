@@ -1,4 +1,9 @@
+// What Embree is told: buffers for meshes, callbacks for spheres and disks. The callbacks compute in double, since a
+// float32 quadratic loses a sphere seen from far away, and round only the distance that Embree compares.
+
 #include "scene/embree_scene.h"
+
+#include <fmt/format.h>
 
 #include <cstring>
 #include <stdexcept>
@@ -54,7 +59,9 @@ std::optional<float> first_hit(const std::variant<Sphere, Disk>& shape, const RT
     return std::nullopt;
 }
 
-const std::variant<Sphere, Disk>& shape_of(void* pointer) { return *static_cast<std::variant<Sphere, Disk>*>(pointer); }
+const std::variant<Sphere, Disk>& shape_of(void* pointer) {
+    return *static_cast<std::variant<Sphere, Disk>*>(pointer);
+}
 
 void set_bounds(const RTCBoundsFunctionArguments* arguments) {
     const auto& shape = shape_of(arguments->geometryUserPtr);
@@ -102,7 +109,9 @@ void occluded_callback(const RTCOccludedFunctionNArguments* arguments) {
     if (first_hit(shape_of(arguments->geometryUserPtr), ray)) ray.tfar = -infinity;
 }
 
-void fail(void*, RTCError, const char* message) { throw std::runtime_error(std::string("Embree: ") + message); }
+void fail(void*, RTCError, const char* message) {
+    throw std::runtime_error(std::string("Embree: ") + message);
+}
 
 void require(const void* object) {
     if (!object) throw std::runtime_error("Embree: out of memory");
@@ -110,6 +119,7 @@ void require(const void* object) {
 
 RTCGeometry make_mesh(RTCDevice device, const TriangleMesh& mesh) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    if (mesh.triangles.empty()) return geometry;  // Embree has no empty buffers
     const std::size_t position_bytes = mesh.positions.size() * sizeof(Vector);
     const std::size_t triangle_bytes = mesh.triangles.size() * sizeof(mesh.triangles[0]);
     void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vector),
@@ -140,12 +150,18 @@ EmbreeScene::~EmbreeScene() {
     if (device) rtcReleaseDevice(device);
 }
 
-void EmbreeSceneDeleter::operator()(EmbreeScene* embree) const { delete embree; }
+void EmbreeSceneDeleter::operator()(EmbreeScene* embree) const {
+    delete embree;
+}
 
 std::unique_ptr<EmbreeScene, EmbreeSceneDeleter> build_embree_scene(const std::vector<Shape>& shapes) {
     std::unique_ptr<EmbreeScene, EmbreeSceneDeleter> embree(new EmbreeScene);
-    embree->device = rtcNewDevice(nullptr);
-    require(embree->device);
+    // One thread builds: then no tie between surfaces that coincide can depend on how many there are. Configuration
+    // files would be settings from outside. Tracing runs on the caller's threads.
+    embree->device = rtcNewDevice("threads=1,start_threads=0,ignore_config_files=1");
+    if (!embree->device)
+        throw std::runtime_error(
+            fmt::format("Embree: no device, error {}", static_cast<int>(rtcGetDeviceError(nullptr))));
     rtcSetDeviceErrorFunction(embree->device, fail, nullptr);
     embree->scene = rtcNewScene(embree->device);
     rtcSetSceneFlags(embree->scene, RTC_SCENE_FLAG_ROBUST);
@@ -157,8 +173,8 @@ std::unique_ptr<EmbreeScene, EmbreeSceneDeleter> build_embree_scene(const std::v
     std::size_t next_analytic = 0;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         const auto* mesh = std::get_if<TriangleMesh>(&shapes[i].geometry);
-        RTCGeometry geometry = mesh ? make_mesh(embree->device, *mesh)
-                                    : make_analytic(embree->device, embree->analytic[next_analytic++]);
+        RTCGeometry geometry =
+            mesh ? make_mesh(embree->device, *mesh) : make_analytic(embree->device, embree->analytic[next_analytic++]);
         rtcCommitGeometry(geometry);
         rtcAttachGeometryByID(embree->scene, geometry, static_cast<unsigned>(i));
         rtcReleaseGeometry(geometry);

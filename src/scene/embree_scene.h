@@ -1,5 +1,5 @@
-// The scene's shapes inside Embree: meshes as its triangles, spheres and disks as user geometry that is intersected here, in
-// double. A geometry's number is its shape's index in Scene::shapes.
+// The scene's shapes inside Embree: meshes as its triangles, spheres and disks as user geometry that is intersected
+// here, in double. A geometry's number is its shape's index in Scene::shapes.
 
 #pragma once
 
@@ -18,7 +18,7 @@ struct EmbreeScene {
 
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
-    std::vector<std::variant<Sphere, Disk>> analytic;    ///< what user geometries point to; fixed once built
+    std::vector<std::variant<Sphere, Disk>> analytic;  ///< what user geometries point to; fixed once built
 };
 
 /// Hands the shapes to Embree. Throws std::runtime_error when Embree fails (it is out of memory).

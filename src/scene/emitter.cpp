@@ -1,3 +1,9 @@
+// Light leaves a shape uniform in area and by the cosine, so a photon's weight is the same wherever it starts. For
+// direct light a sphere is sampled by the solid angle of its visible cap, whose density is constant; other shapes
+// uniform in area, which becomes a density of directions by squared distance / (cosine * area).
+//
+// [Shirley, Wang & Zimmerman 1996, "Monte Carlo Techniques for Direct Lighting Calculations": the cone of a sphere]
+
 #include "scene/emitter.h"
 
 #include "core/sampling.h"
@@ -9,7 +15,7 @@ namespace {
 /// A point of a shape's surface.
 struct SurfacePoint {
     Vector position;
-    Vector normal;    // geometric, unit, to the emitting side
+    Vector normal;  // geometric, unit, to the emitting side
 };
 
 SurfacePoint sample_area(const TriangleMesh& mesh, const Shape& shape, const Imath::V2f& u, double u_triangle) {
@@ -35,15 +41,16 @@ SurfacePoint sample_area(const Disk& disk, const Shape&, const Imath::V2f& u, do
 }
 
 SurfacePoint sample_area(const Shape& shape, const Imath::V2f& u, double u_triangle) {
-    return std::visit([&](const auto& geometry) { return sample_area(geometry, shape, u, u_triangle); }, shape.geometry);
+    return std::visit([&](const auto& geometry) { return sample_area(geometry, shape, u, u_triangle); },
+                      shape.geometry);
 }
 
 /// The cone under which an outward emitting sphere is seen; empty from inside it or from on it.
 struct Cone {
-    VectorD axis;                // unit
-    double distance;             // to the centre
+    VectorD axis;     // unit
+    double distance;  // to the centre
     double one_minus_cos_max;
-    double density;              // per steradian
+    double density;  // per steradian
 };
 
 std::optional<Cone> visible_cone(const Sphere& sphere, const Vector& receiver) {
@@ -53,23 +60,26 @@ std::optional<Cone> visible_cone(const Sphere& sphere, const Vector& receiver) {
     if (sphere.orientation < 0.0f || !(distance > radius)) return std::nullopt;
     const double sin_squared = (radius / distance) * (radius / distance);
     const double cos_max = std::sqrt((distance - radius) * (distance + radius)) / distance;
-    const double one_minus_cos_max = sin_squared / (1.0 + cos_max);    // does not cancel for a small or far sphere
+    const double one_minus_cos_max = sin_squared / (1.0 + cos_max);  // does not cancel for a small or far sphere
     return Cone{to_centre / distance, distance, one_minus_cos_max, 1.0 / (2.0 * pi * one_minus_cos_max)};
 }
 
-DirectSample sample_cone_of(const Sphere& sphere, const Cone& cone, const Vector& receiver, const ColorD& radiance,
-                            const Imath::V2f& u) {
+DirectSample sample_cone_of(const Sphere& sphere, const Cone& cone, const ColorD& radiance, const Imath::V2f& u) {
     const Vector local = sample_cone(u, static_cast<float>(cone.one_minus_cos_max));
-    const Vector direction = make_frame(Vector(cone.axis)).to_world(local);
+    const Frame frame = make_frame(Vector(cone.axis));
+    const Vector direction = frame.to_world(local);
     // Nearest intersection with the sphere: the direction was drawn inside the cone, so rounding aside there is one.
+    // Relative to the centre and in the cone's frame, because a small sphere is lost in the rounding of receiver + t
+    // direction.
     const double radius = sphere.radius;
     const double sine_squared = static_cast<double>(local.x) * local.x + static_cast<double>(local.y) * local.y;
     const double along = cone.distance * std::sqrt(std::max(0.0, 1.0 - sine_squared));
     const double half_chord = std::sqrt(std::max(0.0, radius * radius - cone.distance * cone.distance * sine_squared));
-    const VectorD on_ray = VectorD(receiver) + VectorD(direction) * (along - half_chord);
-    const VectorD outward = (on_ray - VectorD(sphere.centre)).normalized();
-    const Vector normal(outward);
-    const Vector position(VectorD(sphere.centre) + outward * radius);
+    const double x = local.x * (along - half_chord) / radius;
+    const double y = local.y * (along - half_chord) / radius;
+    const double towards_receiver = std::sqrt(std::max(0.0, 1.0 - x * x - y * y));
+    const Vector normal = frame.to_world(Vector(VectorD(x, y, -towards_receiver).normalized())).normalized();
+    const Vector position(VectorD(sphere.centre) + VectorD(normal) * radius);
     return {.position = offset_from_surface(position, normal, normal),
             .direction = direction,
             .radiance = radiance,
@@ -80,8 +90,9 @@ DirectSample sample_cone_of(const Sphere& sphere, const Cone& cone, const Vector
 }  // namespace
 
 std::uint32_t choose_emitter(const Scene& scene, double u) {
-    const auto found = std::upper_bound(scene.emitters.begin(), scene.emitters.end() - 1, u,
-                                        [](double value, const Emitter& emitter) { return value < emitter.choice_cdf; });
+    const auto found =
+        std::upper_bound(scene.emitters.begin(), scene.emitters.end() - 1, u,
+                         [](double value, const Emitter& emitter) { return value < emitter.choice_cdf; });
     return static_cast<std::uint32_t>(found - scene.emitters.begin());
 }
 
@@ -116,8 +127,7 @@ std::optional<DirectSample> sample_direct(const Scene& scene, std::uint32_t emit
     const AreaLight& light = std::get<AreaLight>(emitter.kind);
     const Shape& shape = scene.shapes[light.shape];
     if (const auto* sphere = std::get_if<Sphere>(&shape.geometry))
-        if (const auto cone = visible_cone(*sphere, receiver))
-            return sample_cone_of(*sphere, *cone, receiver, light.radiance, u);
+        if (const auto cone = visible_cone(*sphere, receiver)) return sample_cone_of(*sphere, *cone, light.radiance, u);
 
     const SurfacePoint point = sample_area(shape, u, u_triangle);
     const VectorD to_light = VectorD(point.position) - VectorD(receiver);

@@ -140,7 +140,7 @@ private:
         else if (type == "disk")
             shape.geometry = DiskDescription{.centre = transform_point(to_world, VectorD(0.0)),
                                              .normal = transform_normal(to_world, {0.0, 0.0, flip_normals ? -1.0 : 1.0}),
-                                             .radius = uniform_scale(to_world, element.place)};
+                                             .radius = uniform_scale(to_world, 2, element.place)};
         else
             fail_unknown(element, "cube, disk, obj, rectangle, sphere");
         properties.require_all_known();
@@ -189,7 +189,7 @@ private:
         const double radius = properties.number("radius").value_or(1.0);
         if (!(radius > 0.0)) throw InputError(properties.place_of("radius"), fmt::format("radius: expected a number above 0, got {}", radius));
         return {.centre = transform_point(to_world, centre),
-                .radius = radius * uniform_scale(to_world, element.place),
+                .radius = radius * uniform_scale(to_world, 3, element.place),
                 .flip_normals = flip_normals};
     }
 
@@ -287,7 +287,7 @@ private:
 
     void read_film(const XmlElement& element) {
         const std::string& type = element.require("type");
-        if (type != "hdrfilm" && type != "ldrfilm" && type != "mfilm") fail_unknown(element, "hdrfilm, ldrfilm");
+        if (type != "hdrfilm" && type != "ldrfilm" && type != "mfilm") fail_unknown(element, "hdrfilm, ldrfilm, mfilm");
         Properties properties(element);
         const auto size = [&](const std::string& name, int missing) {
             const long value = properties.integer(name).value_or(missing);
@@ -296,8 +296,16 @@ private:
         };
         scene_.camera.width = size("width", 768);
         scene_.camera.height = size("height", 576);
-        for (const char* name : {"crop_offset_x", "crop_offset_y", "crop_width", "crop_height"})
-            if (properties.integer(name)) throw InputError(properties.place_of(name), fmt::format("{}: cropped films are not known here", name));
+        const std::pair<const char*, long> whole_film[] = {{"crop_offset_x", 0},
+                                                           {"crop_offset_y", 0},
+                                                           {"crop_width", scene_.camera.width},
+                                                           {"crop_height", scene_.camera.height}};
+        for (const auto& [name, whole] : whole_film) {
+            const long value = properties.integer(name).value_or(whole);
+            if (value != whole)
+                throw InputError(properties.place_of(name),
+                                 fmt::format("{}: expected {}, cropped films are not known here, got {}", name, whole, value));
+        }
         for (const XmlElement* object : properties.objects())
             note(fmt::format("{} \"{}\": not read; every pixel is the mean of its samples", object->tag, object->attribute("type")));
         note_unread(element, properties);

@@ -1,5 +1,6 @@
-// Wavefront OBJ through tinyobjloader's callbacks, in double. Its parser accepts what is not a number as 0 and passes indices
-// on unchecked, so numbers are checked here line by line first, and indices where they are used.
+// Wavefront OBJ through tinyobjloader, in double. Its parser takes what is not a number for 0, a face's corner "2junk" or
+// "2.5" for 2, and drops polygons whose corners do not exist. So every line that matters is checked here first, which is
+// also how a message knows its line.
 
 #include <fmt/format.h>
 
@@ -7,8 +8,11 @@
 #define TINYOBJLOADER_IMPLEMENTATION
 #include <tiny_obj_loader.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <map>
-#include <sstream>
+#include <string_view>
 #include <tuple>
 
 #include "core/error.h"
@@ -19,22 +23,96 @@ namespace photonlab {
 
 namespace {
 
-/// Refuses vertex data that is not a finite number and faces with fewer than three corners, each with its line.
-void require_well_formed(const std::string& text, const std::filesystem::path& file) {
-    std::istringstream stream(text);
-    std::string line;
-    for (std::size_t number = 1; std::getline(stream, line); ++number) {
-        std::istringstream words(line.substr(0, line.find('#')));
-        std::string keyword;
-        words >> keyword;
-        const std::string place = fmt::format("{}:{}", file.string(), number);
-        const std::size_t needed = keyword == "v" || keyword == "vn" ? 3 : keyword == "vt" ? 1 : 0;
-        std::size_t count = 0;
-        for (std::string word; words >> word; ++count)
-            if (needed > 0) parse_number(word, place);
-        if (count < needed) throw InputError(place, fmt::format("{}: expected {} numbers, got {}", keyword, needed, count));
-        if (keyword == "f" && count < 3) throw InputError(place, fmt::format("f: expected at least 3 corners, got {}", count));
+constexpr std::size_t corner_limit = 255;    // of one face: tinyobjloader 2.0.0rc10 counts them in a byte
+
+/// Calls `use(line number, words)` for each line of vertex data or faces, and blanks the comments in them, which the
+/// parser would take for more corners. Lines end as they do for the parser: at \n, \r or both.
+template <typename Use>
+void for_each_data_line(std::string& text, const Use& use) {
+    std::vector<std::string_view> words;
+    std::size_t number = 0;
+    for (std::size_t begin = 0; begin < text.size();) {
+        ++number;
+        const std::size_t end = std::min(text.find_first_of("\r\n", begin), text.size());
+        const std::size_t next = text.compare(end, 2, "\r\n") == 0 ? end + 2 : end + 1;
+        const auto split = [&](std::size_t stop) {
+            words.clear();
+            constexpr std::string_view blanks = " \t\v\f";
+            const std::string_view line = std::string_view(text).substr(begin, stop - begin);
+            for (std::size_t i = line.find_first_not_of(blanks); i < line.size(); i = line.find_first_not_of(blanks, i)) {
+                const std::size_t word_end = std::min(line.find_first_of(blanks, i), line.size());
+                words.push_back(line.substr(i, word_end - i));
+                i = word_end;
+            }
+        };
+        split(end);
+        if (!words.empty() && (words[0] == "v" || words[0] == "vn" || words[0] == "vt" || words[0] == "f")) {
+            const std::size_t comment = std::min(text.find('#', begin), end);
+            std::fill(text.begin() + static_cast<std::ptrdiff_t>(comment), text.begin() + static_cast<std::ptrdiff_t>(end), ' ');
+            split(comment);
+            use(number, words);
+        }
+        begin = next;
     }
+}
+
+/// How many vertices, texture coordinates and normals: in the order in which a face's corner names them.
+using Counts = std::array<std::size_t, 3>;
+
+/// Refuses vertex data that is not finite numbers.
+void require_numbers(const std::vector<std::string_view>& words, const std::string& place) {
+    const std::size_t needed = words[0] == "vt" ? 1 : 3;
+    if (words.size() - 1 < needed)
+        throw InputError(place, fmt::format("{}: expected {} numbers, got {}", words[0], needed, words.size() - 1));
+    bool all_zero = true;
+    for (std::size_t i = 1; i < words.size(); ++i) all_zero = parse_number(words[i], place) == 0.0 && all_zero;
+    if (words[0] == "vn" && all_zero) throw InputError(place, "vn: expected a direction, got 0 0 0");
+}
+
+/// Refuses a face whose corners are not vertex, vertex/texture, vertex//normal or vertex/texture/normal, or do not exist:
+/// counted from 1 in the whole file (`total`), or backwards by negative numbers from this line (`before`).
+void require_face(const std::vector<std::string_view>& words, const Counts& before, const Counts& total, const std::string& place) {
+    static constexpr std::string_view names[] = {"vertex", "texture coordinate", "normal"};
+    const std::size_t corners = words.size() - 1;
+    if (corners < 3 || corners > corner_limit)
+        throw InputError(place, fmt::format("f: expected 3 to {} corners, got {}", corner_limit, corners));
+    for (std::size_t i = 1; i < words.size(); ++i) {
+        std::string_view rest = words[i];
+        for (std::size_t kind = 0;; ++kind) {
+            const std::size_t slash = rest.find('/');
+            const std::string_view field = rest.substr(0, slash);
+            const bool may_be_empty = kind == 1 && slash != rest.npos;
+            if (kind > 2 || (field.empty() && !may_be_empty))
+                throw InputError(place, fmt::format("f: expected a corner as 1, 1/2, 1//3 or 1/2/3, got \"{}\"", words[i]));
+            if (!field.empty()) {
+                const long index = parse_integer(field, place);
+                const std::size_t count = index < 0 ? before[kind] : total[kind];
+                if (index == 0 || static_cast<std::size_t>(std::abs(index)) > count)
+                    throw InputError(place, fmt::format("a face names {} {}, but there are {}{}", names[kind], index, count,
+                                                        index < 0 ? " before it" : ""));
+            }
+            if (slash == rest.npos) break;
+            rest.remove_prefix(slash + 1);
+        }
+    }
+}
+
+void require_well_formed(std::string& text, const std::filesystem::path& file) {
+    const auto place = [&](std::size_t number) { return fmt::format("{}:{}", file.string(), number); };
+    const auto kind_of = [](std::string_view keyword) { return keyword == "v" ? 0u : keyword == "vt" ? 1u : 2u; };
+    Counts total{};
+    for_each_data_line(text, [&](std::size_t number, const std::vector<std::string_view>& words) {
+        if (words[0] == "f") return;
+        require_numbers(words, place(number));
+        ++total[kind_of(words[0])];
+    });
+    Counts before{};
+    for_each_data_line(text, [&](std::size_t number, const std::vector<std::string_view>& words) {
+        if (words[0] == "f")
+            require_face(words, before, total, place(number));
+        else
+            ++before[kind_of(words[0])];
+    });
 }
 
 /// Vertex normals as Mitsuba computes them where a file has none: face normals weighted by the angle at the vertex.
@@ -58,10 +136,10 @@ std::vector<VectorD> angle_weighted_normals(const MeshDescription& mesh) {
 }  // namespace
 
 MeshDescription load_obj_mesh(const std::filesystem::path& file, bool face_normals) {
-    const std::string text = read_whole_file(file, file.string());
+    std::string text = read_whole_file(file, file.string());
     require_well_formed(text, file);
     tinyobj::ObjReaderConfig config;
-    config.triangulate = true;
+    config.triangulate = false;    // its cuts differ between versions and from Mitsuba's
     config.vertex_color = false;
     tinyobj::ObjReader reader;
     if (!reader.ParseFromString(text, "", config))
@@ -103,10 +181,19 @@ MeshDescription load_obj_mesh(const std::filesystem::path& file, bool face_norma
         }
         return entry->second;
     };
-    for (const tinyobj::shape_t& shape : reader.GetShapes())
-        for (std::size_t i = 0; i + 2 < shape.mesh.indices.size(); i += 3)
-            mesh.triangles.push_back({vertex_of(shape.mesh.indices[i]), vertex_of(shape.mesh.indices[i + 1]),
-                                      vertex_of(shape.mesh.indices[i + 2])});
+    for (const tinyobj::shape_t& shape : reader.GetShapes()) {
+        std::size_t first = 0;
+        for (const std::size_t corners : shape.mesh.num_face_vertices) {
+            const std::uint32_t centre = vertex_of(shape.mesh.indices[first]);
+            std::uint32_t last = vertex_of(shape.mesh.indices[first + 1]);
+            for (std::size_t corner = 2; corner < corners; ++corner) {
+                const std::uint32_t next = vertex_of(shape.mesh.indices[first + corner]);
+                mesh.triangles.push_back({centre, last, next});
+                last = next;
+            }
+            first += corners;
+        }
+    }
     if (mesh.triangles.empty()) throw InputError(file.string(), "expected at least one face");
     if (!face_normals && !all_have_normals) mesh.normals = angle_weighted_normals(mesh);
     return mesh;

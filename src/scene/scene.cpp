@@ -1,3 +1,7 @@
+// From a description to a Scene: everything checked, moved and scaled to the unit box, lights listed with their shares
+// of the power, and the shapes handed to Embree. Then what a ray finds there, completed to a Hit more accurately than
+// the ray's own float32 distance could.
+
 #include "scene/scene.h"
 
 #include <fmt/format.h>
@@ -62,6 +66,11 @@ void require_mesh(const MeshDescription& mesh, const std::string& place) {
     if (!mesh.texture_coordinates.empty() && mesh.texture_coordinates.size() != mesh.positions.size())
         throw InputError(place, fmt::format("expected texture coordinates for each of {} vertices, got {}",
                                             mesh.positions.size(), mesh.texture_coordinates.size()));
+    for (std::size_t i = 0; i < mesh.normals.size(); ++i)
+        if (!is_finite(mesh.normals[i])) throw InputError(place, fmt::format("normal {} is not finite", i + 1));
+    for (std::size_t i = 0; i < mesh.texture_coordinates.size(); ++i)
+        if (!std::isfinite(mesh.texture_coordinates[i].x) || !std::isfinite(mesh.texture_coordinates[i].y))
+            throw InputError(place, fmt::format("texture coordinates {} are not finite", i + 1));
 }
 
 void require_valid(const SceneDescription& description) {
@@ -75,15 +84,22 @@ void require_valid(const SceneDescription& description) {
         }
     for (const ShapeDescription& shape : description.shapes) {
         if (shape.material >= description.materials.size())
-            throw InputError(shape.place, fmt::format("material {} of {}", shape.material, description.materials.size()));
+            throw InputError(shape.place,
+                             fmt::format("material {} of {}", shape.material, description.materials.size()));
         if (shape.radiance) require_light(*shape.radiance, shape.place, "radiance");
         if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry)) require_mesh(*mesh, shape.place);
         const auto require_round = [&](const VectorD& centre, double radius) {
             if (!is_finite(centre) || !std::isfinite(radius) || !(radius > 0.0))
-                throw InputError(shape.place, fmt::format("expected a finite centre and a radius above 0, got radius {}", radius));
+                throw InputError(shape.place,
+                                 fmt::format("expected a finite centre and a radius above 0, got radius {}", radius));
         };
-        if (const auto* sphere = std::get_if<SphereDescription>(&shape.geometry)) require_round(sphere->centre, sphere->radius);
-        if (const auto* disk = std::get_if<DiskDescription>(&shape.geometry)) require_round(disk->centre, disk->radius);
+        if (const auto* sphere = std::get_if<SphereDescription>(&shape.geometry))
+            require_round(sphere->centre, sphere->radius);
+        if (const auto* disk = std::get_if<DiskDescription>(&shape.geometry)) {
+            require_round(disk->centre, disk->radius);
+            if (!is_finite(disk->normal) || disk->normal.length2() == 0.0)
+                throw InputError(shape.place, "expected a disk's normal of unit length");
+        }
     }
     for (const PointLightDescription& light : description.point_lights) {
         require_light(light.intensity, light.place, "intensity");
@@ -101,6 +117,20 @@ struct ToUnitBox {
     Vector operator()(const VectorD& point) const { return Vector((point - centre) / unit_length); }
     float length(double scene_units) const { return static_cast<float>(scene_units / unit_length); }
 };
+
+/// The box that becomes the unit box. A point light's intensity is divided by the square of its size, which must
+/// therefore be a double too.
+ToUnitBox make_unit_box(const Bounds& box) {
+    if (box.is_empty()) return {VectorD(0.0), 1.0};
+    const VectorD extent = box.upper - box.lower;
+    const double largest = std::max({extent.x, extent.y, extent.z});
+    const VectorD centre = (box.lower + box.upper) * 0.5;
+    const double unit_length = largest > 0.0 ? largest : 1.0;
+    if (!is_finite(centre) || !std::isnormal(unit_length * unit_length))
+        throw InputError(fmt::format("the scene is {} scene units large around ({} {} {}): beyond double precision",
+                                     largest, centre.x, centre.y, centre.z));
+    return {centre, unit_length};
+}
 
 double triangle_area(const TriangleMesh& mesh, const Imath::Vec3<std::uint32_t>& triangle) {
     const VectorD a(mesh.positions[triangle.x]);
@@ -140,23 +170,30 @@ Shape make_shape(const ShapeDescription& description, const ToUnitBox& to_unit_b
     return shape;
 }
 
-Camera make_camera(const CameraDescription& description, std::optional<Resolution> resolution, const ToUnitBox& to_unit_box) {
+Camera make_camera(const CameraDescription& description, std::optional<Resolution> resolution,
+                   const ToUnitBox& to_unit_box) {
     const int width = resolution ? resolution->width : description.width;
     const int height = resolution ? resolution->height : description.height;
     if (width < 1 || height < 1)
         throw InputError(fmt::format("resolution: expected at least 1 x 1, got {} x {}", width, height));
     if (!(description.fov_x > 0.0 && description.fov_x < 180.0))
-        throw InputError(fmt::format("camera: expected a field of view in (0, 180) degrees, got {}", description.fov_x));
+        throw InputError(
+            fmt::format("camera: expected a field of view in (0, 180) degrees, got {}", description.fov_x));
     const Matrix& m = description.to_world;
     const auto row = [&](int i) { return VectorD(m[i][0], m[i][1], m[i][2]); };
     const VectorD left = row(0).normalized();
     const VectorD up = row(1).normalized();
     const VectorD forward = row(2).normalized();
     const VectorD position = row(3);
-    if (!is_finite(position) || left.length2() == 0.0 || up.length2() == 0.0 || forward.length2() == 0.0)
+    // Written so that NaN fails as well.
+    if (!is_finite(position) || !(std::abs(left.cross(up).dot(forward)) > 0.0))
         throw InputError("camera: to_world: expected an invertible transform with finite values");
-    const double image_width = 2.0 * std::tan(description.fov_x * pi / 360.0);    // at distance 1
-    const double image_height = image_width * height / width;                     // square pixels
+    if (!is_finite(to_unit_box(position)))
+        throw InputError(
+            fmt::format("camera: position {} {} {} is too far from the scene, which is {} scene units large",
+                        position.x, position.y, position.z, to_unit_box.unit_length));
+    const double image_width = 2.0 * std::tan(description.fov_x * pi / 360.0);  // at distance 1
+    const double image_height = image_width * height / width;                   // square pixels
     return {.position = to_unit_box(position),
             .forward = forward,
             .right = -left * image_width,
@@ -166,21 +203,29 @@ Camera make_camera(const CameraDescription& description, std::optional<Resolutio
             .pixel_angle = image_width / width};
 }
 
-/// Lists the lights that have power, and with which probability each is chosen. Ratios of power, not power, so that light
-/// times a constant changes no choice.
+/// Lists the lights that have power, and with which probability each is chosen. Ratios of power, not power, so that
+/// light times a constant changes no choice.
 void add_emitters(Scene& scene, const SceneDescription& description, const ToUnitBox& to_unit_box) {
     for (std::size_t i = 0; i < description.shapes.size(); ++i) {
         const std::optional<ColorD>& radiance = description.shapes[i].radiance;
         Shape& shape = scene.shapes[i];
-        if (!radiance || is_black(*radiance) || !(shape.area > 0.0)) continue;
+        if (!radiance) continue;
+        const ColorD power = *radiance * (pi * shape.area);
+        if (!(mean_channel(power) > 0.0)) continue;
         shape.emitter = static_cast<std::uint32_t>(scene.emitters.size());
-        scene.emitters.push_back({AreaLight{*radiance, static_cast<std::uint32_t>(i)}, *radiance * (pi * shape.area), 0.0, 0.0});
+        scene.emitters.push_back({AreaLight{*radiance, static_cast<std::uint32_t>(i)}, power, 0.0, 0.0});
     }
     const double unit_area = to_unit_box.unit_length * to_unit_box.unit_length;
     for (const PointLightDescription& light : description.point_lights) {
-        if (is_black(light.intensity)) continue;
         const ColorD intensity = light.intensity / unit_area;
-        scene.emitters.push_back({PointLight{intensity, to_unit_box(light.position)}, intensity * (4.0 * pi), 0.0, 0.0});
+        const Vector position = to_unit_box(light.position);
+        if (!is_finite(position))
+            throw InputError(
+                light.place,
+                fmt::format("position {} {} {} is too far from the scene, which is {} scene units large",
+                            light.position.x, light.position.y, light.position.z, to_unit_box.unit_length));
+        const ColorD power = intensity * (4.0 * pi);
+        if (mean_channel(power) > 0.0) scene.emitters.push_back({PointLight{intensity, position}, power, 0.0, 0.0});
     }
     for (const Emitter& emitter : scene.emitters) scene.total_power += mean_channel(emitter.power);
     double running = 0.0;
@@ -208,12 +253,7 @@ Scene build_scene(const SceneDescription& description, std::optional<Resolution>
     if (box.is_empty())
         for (const PointLightDescription& light : description.point_lights) box.include(light.position);
 
-    ToUnitBox to_unit_box{VectorD(0.0), 1.0};
-    if (!box.is_empty()) {
-        const VectorD extent = box.upper - box.lower;
-        const double largest = std::max({extent.x, extent.y, extent.z});
-        to_unit_box = {(box.lower + box.upper) * 0.5, largest > 0.0 ? largest : 1.0};
-    }
+    const ToUnitBox to_unit_box = make_unit_box(box);
 
     Scene scene;
     scene.name = description.name;
@@ -223,8 +263,7 @@ Scene build_scene(const SceneDescription& description, std::optional<Resolution>
     scene.centre = to_unit_box.centre;
     scene.materials = description.materials;
     scene.max_depth = description.max_depth;
-    if (!bounds.is_empty())
-        scene.bounding_radius = to_unit_box.length(0.5 * (bounds.upper - bounds.lower).length());
+    if (!bounds.is_empty()) scene.bounding_radius = to_unit_box.length(0.5 * (bounds.upper - bounds.lower).length());
     for (const ShapeDescription& shape : description.shapes) scene.shapes.push_back(make_shape(shape, to_unit_box));
     add_emitters(scene, description, to_unit_box);
     scene.camera = make_camera(description.camera, resolution, to_unit_box);
@@ -236,7 +275,8 @@ Scene build_scene(const SceneDescription& description, std::optional<Resolution>
 
 namespace {
 
-/// Completes a hit on a triangle. The position comes from the vertices, which is more accurate than origin + t direction.
+/// Completes a hit on a triangle. The position comes from the vertices, which is more accurate than origin + t
+/// direction.
 void complete(Hit& hit, const TriangleMesh& mesh, const Ray& ray, float u, float v) {
     const auto& triangle = mesh.triangles[hit.primitive];
     const float w = 1.0f - u - v;

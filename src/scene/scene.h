@@ -75,7 +75,7 @@ struct Camera {
     VectorD down;              ///< as long as the image plane at distance 1 is high
     int width;
     int height;
-    double pixel_angle;        ///< angle that a pixel at the image's centre is wide, radians
+    double pixel_angle;        ///< angle that a central pixel is wide, radians; of small angles: its width at distance 1
 
     Vector direction(double x, double y) const;    ///< unit
 };

@@ -8,12 +8,9 @@ namespace photonlab {
 
 namespace {
 
-/// A value as text of three numbers, or of one that stands for all three where `one` allows it.
-VectorD parse_three(const std::string& text, const std::string& place, bool one = false) {
+VectorD parse_three(const std::string& text, const std::string& place) {
     const std::vector<double> numbers = parse_numbers(text, place);
-    if (one && numbers.size() == 1) return VectorD(numbers[0]);
-    if (numbers.size() != 3)
-        throw InputError(place, fmt::format("expected {}3 numbers, got \"{}\"", one ? "1 or " : "", text));
+    if (numbers.size() != 3) throw InputError(place, fmt::format("expected 3 numbers, got \"{}\"", text));
     return {numbers[0], numbers[1], numbers[2]};
 }
 
@@ -31,12 +28,12 @@ Matrix parse_matrix(const XmlElement& element) {
     return result;
 }
 
-/// Camera axes as Mitsuba's: x to the left of the image, y up, z forward.
+/// Camera axes as Mitsuba's: x to the left of the image, y up, z forward. Without `up` the versions of Mitsuba turn the
+/// camera differently about its axis, so it must be there.
 Matrix parse_look_at(const XmlElement& element) {
     const VectorD origin = parse_three(element.require("origin"), element.place);
     const VectorD target = parse_three(element.require("target"), element.place);
-    const std::string up_text = element.attribute("up");
-    const VectorD up = up_text.empty() ? VectorD(0.0, 1.0, 0.0) : parse_three(up_text, element.place);
+    const VectorD up = parse_three(element.require("up"), element.place);
     const VectorD forward = (target - origin).normalized();
     const VectorD left = up.cross(forward).normalized();
     if (forward.length2() == 0.0 || left.length2() == 0.0)
@@ -69,8 +66,7 @@ Matrix parse_element(const XmlElement& element) {
     if (element.tag == "translate") {
         result.setTranslation(parse_vector(element));
     } else if (element.tag == "scale") {
-        const std::string value = element.attribute("value");
-        result.setScale(value.empty() ? parse_vector(element, 1.0) : parse_three(value, element.place, true));
+        result.setScale(parse_vector(element, 1.0));
     } else {
         throw InputError(element.place, fmt::format("unknown transform <{}>; known here: lookat, matrix, rotate, scale, translate",
                                                     element.tag));
@@ -81,10 +77,18 @@ Matrix parse_element(const XmlElement& element) {
 }  // namespace
 
 VectorD parse_vector(const XmlElement& element, double missing) {
-    const std::string value = element.attribute("value");
-    if (!value.empty()) return parse_three(value, element.place);
-    VectorD result(missing);
     const char* const axes[] = {"x", "y", "z"};
+    if (element.attributes.count("value")) {
+        for (const char* axis : axes)
+            if (element.attributes.count(axis))
+                throw InputError(element.place, fmt::format("<{}>: expected value or x, y, z, got both", element.tag));
+        const std::string& text = element.require("value");
+        const std::vector<double> numbers = parse_numbers(text, element.place);
+        if (numbers.size() == 1) return VectorD(numbers[0]);
+        if (numbers.size() != 3) throw InputError(element.place, fmt::format("expected 1 or 3 numbers, got \"{}\"", text));
+        return {numbers[0], numbers[1], numbers[2]};
+    }
+    VectorD result(missing);
     bool any = false;
     for (int axis = 0; axis < 3; ++axis) {
         const std::string text = element.attribute(axes[axis]);
@@ -92,7 +96,7 @@ VectorD parse_vector(const XmlElement& element, double missing) {
         result[axis] = parse_number(text, element.place);
         any = true;
     }
-    if (!any) throw InputError(element.place, fmt::format("<{}> needs x, y, z or a value of 3 numbers", element.tag));
+    if (!any) throw InputError(element.place, fmt::format("<{}> needs x, y, z or a value of 1 or 3 numbers", element.tag));
     return result;
 }
 
@@ -125,12 +129,13 @@ double handedness(const Matrix& m) {
     return x.cross(y).dot(z);
 }
 
-double uniform_scale(const Matrix& m, const std::string& place) {
+double uniform_scale(const Matrix& m, int axis_count, const std::string& place) {
     const VectorD axes[] = {{m[0][0], m[0][1], m[0][2]}, {m[1][0], m[1][1], m[1][2]}, {m[2][0], m[2][1], m[2][2]}};
     const double scale = axes[0].length();
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < axis_count; ++i) {
         const bool same_length = std::abs(axes[i].length() - scale) <= 1e-6 * scale;
-        const bool perpendicular = std::abs(axes[i].dot(axes[(i + 1) % 3])) <= 1e-6 * scale * scale;
+        bool perpendicular = true;
+        for (int j = 0; j < i; ++j) perpendicular = perpendicular && std::abs(axes[i].dot(axes[j])) <= 1e-6 * scale * scale;
         if (!same_length || !perpendicular)
             throw InputError(place, "expected a to_world that scales all directions alike: this shape must stay round");
     }

@@ -1,6 +1,7 @@
 #include "scene/xml_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -18,7 +19,9 @@ namespace photonlab {
 namespace {
 
 constexpr int include_limit = 15;                  // nested files, as in Mitsuba
+constexpr int nesting_limit = 100;                 // elements inside elements of one file
 constexpr std::size_t element_limit = 1'000'000;   // in all files together
+constexpr std::size_t value_limit = 65'536;         // characters of a value once $names are put in
 constexpr std::uintmax_t size_limit = std::uintmax_t{2} << 30;
 
 /// Offsets at which lines start, to turn pugixml's byte offsets into line numbers.
@@ -37,18 +40,66 @@ private:
     std::vector<std::size_t> ends_;
 };
 
-/// "toWorld" to "to_world": the names of Mitsuba 0.6 in the spelling of Mitsuba 2 and 3.
+/// "toWorld" to "to_world" and "intIOR" to "int_ior": the names of Mitsuba 0.6 in the spelling of Mitsuba 2 and 3, by
+/// Mitsuba 3's own rule: capitals become a word of their own where they follow a small letter.
 std::string to_snake_case(std::string_view name) {
     std::string result;
+    bool in_capitals = false;
     for (const char c : name) {
-        if (std::isupper(static_cast<unsigned char>(c))) {
-            if (!result.empty() && result.back() != '_') result += '_';
-            result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-        } else {
+        const auto character = static_cast<unsigned char>(c);
+        if (!std::isupper(character)) {
+            in_capitals = false;
             result += c;
+            continue;
         }
+        if (!in_capitals && !result.empty() && std::islower(static_cast<unsigned char>(result.back()))) {
+            in_capitals = true;
+            result += '_';
+        }
+        result += in_capitals ? static_cast<char>(std::tolower(character)) : c;
     }
     return result;
+}
+
+/// The attributes that Mitsuba gives to an element. An attribute that nobody reads is a mistake that would otherwise
+/// pass for a default. Elements that are not listed are unknown, which whoever meets them says.
+const std::set<std::string>* known_attributes(const std::string& tag) {
+    static const std::set<std::string> plugin{"id", "name", "type"};
+    static const std::set<std::string> value{"name", "value"};
+    static const std::set<std::string> vector{"name", "value", "x", "y", "z"};
+    static const std::set<std::string> step{"value", "x", "y", "z"};
+    static const std::set<std::string> look_at{"origin", "target", "up"};
+    static const std::map<std::string, std::set<std::string>> others{
+        {"scene", {"id", "name", "version"}}, {"transform", {"name"}}, {"include", {"filename"}},
+        {"ref", {"id", "name"}},              {"matrix", {"value"}},   {"rotate", {"angle", "value", "x", "y", "z"}}};
+    for (const char* name : {"bsdf", "emitter", "film", "integrator", "medium", "phase", "rfilter", "sampler", "sensor",
+                             "shape", "texture"})
+        if (tag == name) return &plugin;
+    for (const char* name : {"boolean", "default", "float", "integer", "rgb", "spectrum", "srgb", "string"})
+        if (tag == name) return &value;
+    if (tag == "point" || tag == "vector") return &vector;
+    if (tag == "translate" || tag == "scale") return &step;
+    if (tag == "lookat" || tag == "lookAt" || tag == "look_at") return &look_at;
+    const auto found = others.find(tag);
+    return found == others.end() ? nullptr : &found->second;
+}
+
+/// True for elements that have a place for others inside them.
+bool may_have_children(const std::set<std::string>& attributes, const std::string& tag) {
+    return attributes.count("type") || tag == "scene" || tag == "transform";
+}
+
+void require_structure(const XmlElement& element, const pugi::xml_node& node) {
+    const std::set<std::string>* known = known_attributes(element.tag);
+    if (!known) return;
+    for (const auto& [name, value] : element.attributes)
+        if (!known->count(name))
+            throw InputError(element.place, fmt::format("unknown attribute \"{}\" of <{}>; known here: {}", name,
+                                                        element.tag, fmt::join(*known, ", ")));
+    if (may_have_children(*known, element.tag)) return;
+    for (const pugi::xml_node& child : node.children())
+        if (child.type() == pugi::node_element)
+            throw InputError(element.place, fmt::format("unexpected <{}> inside <{}>", child.name(), element.tag));
 }
 
 bool is_name_character(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
@@ -70,6 +121,7 @@ public:
 
         const std::string text = read_whole_file(file, from);
         bytes_read_ += text;
+        if (bytes_read_.size() > size_limit) throw InputError(from, "expected a scene and its includes to be at most 2 GiB");
         const LineNumbers lines(text);
         pugi::xml_document document;
         const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size());
@@ -80,7 +132,7 @@ public:
         if (std::string_view(root.name()) != "scene")
             throw InputError(fmt::format("{}:{}", file.string(), lines.at(root.offset_debug())),
                              fmt::format("expected <scene>, got <{}>", root.name()));
-        XmlElement scene = convert(root, file, lines);
+        XmlElement scene = convert(root, file, lines, 1);
         open_files_.pop_back();
         return scene;
     }
@@ -92,12 +144,14 @@ public:
     }
 
 private:
-    XmlElement convert(const pugi::xml_node& node, const std::filesystem::path& file, const LineNumbers& lines) {
+    XmlElement convert(const pugi::xml_node& node, const std::filesystem::path& file, const LineNumbers& lines, int depth) {
         if (++elements_ > element_limit)
             throw InputError(file.string(), fmt::format("expected at most {} elements", element_limit));
         XmlElement element;
         element.tag = node.name();
         element.place = fmt::format("{}:{}", file.string(), lines.at(node.offset_debug()));
+        if (depth > nesting_limit)
+            throw InputError(element.place, fmt::format("expected at most {} elements inside each other", nesting_limit));
         element.scene_folder = scene_folder_;
         element.own_folder = file.parent_path();
         for (const pugi::xml_attribute& attribute : node.attributes()) {
@@ -107,11 +161,12 @@ private:
             if (!element.attributes.emplace(name, value).second)
                 throw InputError(element.place, fmt::format("attribute \"{}\" stands twice", name));
         }
+        require_structure(element, node);
         for (const pugi::xml_node& child : node.children()) {
             if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata)
                 throw InputError(element.place, fmt::format("unexpected text \"{}\" inside <{}>", child.value(), element.tag));
             if (child.type() != pugi::node_element) continue;
-            XmlElement converted = convert(child, file, lines);
+            XmlElement converted = convert(child, file, lines, depth + 1);
             if (converted.tag == "default") {
                 const std::string& name = converted.require("name");
                 const auto given = parameters_.find(name);
@@ -142,6 +197,8 @@ private:
             while (length > 0 && !lookup(name.substr(0, length))) --length;
             if (length == 0) throw InputError(place, fmt::format("${} has no <default> before it and no value was given", name));
             result += *lookup(name.substr(0, length));
+            if (result.size() > value_limit)
+                throw InputError(place, fmt::format("expected at most {} characters once $names are put in", value_limit));
             i += 1 + length;
         }
         return result;
@@ -241,8 +298,10 @@ long parse_integer(std::string_view text, const std::string& place) {
 }
 
 bool parse_boolean(std::string_view text, const std::string& place) {
-    if (text == "true" || text == "True") return true;
-    if (text == "false" || text == "False") return false;
+    std::string word(text);
+    for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (word == "true") return true;
+    if (word == "false") return false;
     throw InputError(place, fmt::format("expected true or false, got \"{}\"", text));
 }
 

@@ -29,6 +29,10 @@ int grid_size(int samples_per_pixel) {
 }  // namespace
 
 HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int threads) {
+    constexpr std::size_t material_limit = std::size_t{1} << 16;    // HitPoint::material
+    if (scene.materials.size() > material_limit)
+        throw InputError("expected at most " + std::to_string(material_limit) + " materials in a scene, got " +
+                         std::to_string(scene.materials.size()));
     const Camera& camera = scene.camera;
     const int grid = grid_size(samples_per_pixel);
     const float share = 1.0f / static_cast<float>(samples_per_pixel);

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "statistical/rendering.h"
-#include "statistical/scenes.h"
+#include "tests/statistical/rendering.h"
+#include "tests/statistical/scenes.h"
 
 namespace photonlab::test {
 namespace {

@@ -80,6 +80,7 @@ TEST_F(LoaderTest, EveryMistakeGetsItsMessage) {
     write("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
     write("short.obj", "v 0 0 0\nv 1 0\n");
     write("word.obj", "v 0 0 zero\n");
+    write("lost_quad.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 2 3 9\n");
     write("edge.obj", "v 0 0 0\nv 1 0 0\nf 1 2\n");
 
     const std::vector<std::pair<std::string, std::string>> table{
@@ -140,7 +141,7 @@ TEST_F(LoaderTest, EveryMistakeGetsItsMessage) {
         {shape("<transform name='to_world'>\n<scale value='0'/></transform>"),
          "scene.xml:3: expected an invertible transform with finite values"},
         {shape("<transform name='to_world'>\n<rotate angle='90'/></transform>"),
-         "scene.xml:4: <rotate> needs x, y, z or a value of 3 numbers"},
+         "scene.xml:4: <rotate> needs x, y, z or a value of 1 or 3 numbers"},
         {shape("<transform name='to_world'>\n<translate x='1e400'/></transform>"), "scene.xml:4: expected a finite number, got \"1e400\""},
         {shape("<transform name='to_world'>\n<translate x='1m'/></transform>"), "scene.xml:4: expected a finite number, got \"1m\""},
         {scene("<shape type='sphere'>\n<float name='radius' value='0'/></shape>"), "scene.xml:3: radius: expected a number above 0, got 0"},
@@ -151,11 +152,26 @@ TEST_F(LoaderTest, EveryMistakeGetsItsMessage) {
          "scene.xml:3: cannot read the file \"none.obj\""},
         {scene("<shape type='obj'><string name='filename' value='no_faces.obj'/></shape>"), "no_faces.obj: expected at least one face"},
         {scene("<shape type='obj'><string name='filename' value='bad_index.obj'/></shape>"),
-         "bad_index.obj: a face names vertex 4, but there are 3"},
+         "bad_index.obj:4: a face names vertex 4, but there are 3"},
         {scene("<shape type='obj'><string name='filename' value='nan.obj'/></shape>"), "nan.obj:2: expected a finite number, got \"nan\""},
         {scene("<shape type='obj'><string name='filename' value='short.obj'/></shape>"), "short.obj:2: v: expected 3 numbers, got 2"},
         {scene("<shape type='obj'><string name='filename' value='word.obj'/></shape>"), "word.obj:1: expected a finite number, got \"zero\""},
-        {scene("<shape type='obj'><string name='filename' value='edge.obj'/></shape>"), "edge.obj:3: f: expected at least 3 corners, got 2"},
+        {scene("<shape type='obj'><string name='filename' value='edge.obj'/></shape>"), "edge.obj:3: f: expected 3 to 255 corners, got 2"},
+        {scene("<shape type='obj'><string name='filename' value='lost_quad.obj'/></shape>"),
+         "lost_quad.obj:6: a face names vertex 9, but there are 4"},
+        {scene("<shape type='obj' filename='mesh.obj'/>"),
+         "scene.xml:2: unknown attribute \"filename\" of <shape>; known here: id, name, type"},
+        {shape("<float name='radius' value='1'><bsdf type='diffuse'/></float>"), "scene.xml:3: unexpected <bsdf> inside <float>"},
+        {shape("<transform name='to_world'>\n<translate value='1 2 3' x='4'/></transform>"),
+         "scene.xml:4: <translate>: expected value or x, y, z, got both"},
+        {shape("<transform name='to_world'>\n<translate value='1 2'/></transform>"),
+         "scene.xml:4: expected 1 or 3 numbers, got \"1 2\""},
+        {scene("<shape type='disk'><transform name='to_world'><scale x='2' y='3'/></transform></shape>"),
+         "scene.xml:2: expected a to_world that scales all directions alike: this shape must stay round"},
+        {scene("<bsdf type='diffuse'>\n<float name='intIOR' value='1.5'/></bsdf>"),
+         "scene.xml:3: unknown property \"int_ior\" of bsdf \"diffuse\"; known here: reflectance"},
+        {scene("<bsdf type='twosided' id='a'><ref id='a'/></bsdf>"),
+         "scene.xml:2: twosided: expected a one-sided bsdf, got bsdf \"twosided\""},
         {scene("<include filename='none.xml'/>"), "scene.xml:2: cannot read the file \"none.xml\""},
         {scene("<include filename='cycle.xml'/>"), "cycle.xml:1: \"cycle.xml\" includes itself"},
         {scene("<include filename='broken.xml'/>"), "broken.xml:3: not well-formed XML: Start-end tags mismatch"},
@@ -170,9 +186,11 @@ TEST_F(LoaderTest, EveryMistakeGetsItsMessage) {
         {camera("<film type='hdrfilm'>\n<integer name='width' value='0'/></film>"), "scene.xml:3: width: expected 1 to 16384 pixels, got 0"},
         {camera("<film type='hdrfilm'>\n<integer name='width' value='1.5'/></film>"), "scene.xml:3: expected a whole number, got \"1.5\""},
         {camera("<film type='hdrfilm'>\n<integer name='crop_width' value='5'/></film>"),
-         "scene.xml:3: crop_width: cropped films are not known here"},
+         "scene.xml:3: crop_width: expected 768, cropped films are not known here, got 5"},
         {camera("<transform name='to_world'>\n<lookat origin='0,0,0' target='0,0,0' up='0,1,0'/></transform>"),
          "scene.xml:3: lookat: expected a target away from the origin, and an up that is not the view direction"},
+        {camera("<transform name='to_world'>\n<lookat origin='0,0,0' target='0,0,1'/></transform>"),
+         "scene.xml:3: <lookat> needs an attribute \"up\""},
         {camera("<transform name='to_world'>\n<lookat origin='0,0' target='0,0,1' up='0,1,0'/></transform>"),
          "scene.xml:3: expected 3 numbers, got \"0,0\""},
         {scene("<integrator type='path'>\n<integer name='max_depth' value='0'/></integrator>"),
@@ -188,6 +206,47 @@ TEST_F(LoaderTest, AMissingSceneFileIsNamed) {
     } catch (const InputError& error) {
         EXPECT_EQ(std::string(error.what()), "cannot read the file \"" + (folder_ / "none.xml").string() + "\"");
     }
+}
+
+TEST_F(LoaderTest, AFileThatGrowsWithoutEndIsRefusedNotFollowed) {
+    std::string deep;
+    for (int i = 0; i < 100'000; ++i) deep += "<bsdf type='twosided'>";
+    for (int i = 0; i < 100'000; ++i) deep += "</bsdf>";
+    EXPECT_EQ(message_of("<scene>" + deep + "</scene>"), "scene.xml:1: expected at most 100 elements inside each other");
+
+    std::string doubling = "<default name='a0' value='0123456789'/>";
+    for (int i = 1; i < 40; ++i) {
+        const std::string last = "$a" + std::to_string(i - 1);
+        doubling += "<default name='a" + std::to_string(i) + "' value='" + last + last + "'/>";
+    }
+    EXPECT_EQ(message_of("<scene>" + doubling + "</scene>"), "scene.xml:1: expected at most 65536 characters once $names are put in");
+
+    for (int i = 0; i < 20; ++i)
+        write("level" + std::to_string(i) + ".xml", "<scene><include filename='level" + std::to_string(i + 1) + ".xml'/></scene>");
+    EXPECT_EQ(message_of("<scene><include filename='level0.xml'/></scene>"), "level13.xml:1: expected at most 15 nested includes");
+}
+
+TEST_F(LoaderTest, OneValueStandsForThreeAsInMitsuba) {
+    const auto scene = load_with_sensor("<shape type='cube'><transform name='to_world'><scale value='2'/><translate value='3'/>"
+                                        "</transform></shape><shape type='sphere'><point name='center' value='4'/></shape>");
+    for (const VectorD& corner : mesh_of(scene).positions)
+        for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(std::abs(corner[axis] - 3.0), 2.0, 1e-12);
+    expect_near(std::get<SphereDescription>(scene.shapes.at(1).geometry).centre, {4, 4, 4});
+}
+
+TEST_F(LoaderTest, DisksMayBeScaledAlongTheirNormal) {
+    const auto scene = load_with_sensor("<shape type='disk'><transform name='to_world'><scale x='2' y='2' z='7'/><rotate x='1' angle='90'/>"
+                                        "</transform></shape>");
+    const auto& disk = std::get<DiskDescription>(scene.shapes.at(0).geometry);
+    EXPECT_DOUBLE_EQ(disk.radius, 2.0);
+    expect_near(disk.normal, {0, -1, 0});
+}
+
+TEST_F(LoaderTest, ACropOfTheWholeFilmIsNoCrop) {
+    const auto scene = load("<scene><sensor type='perspective'><film type='hdrfilm'><integer name='width' value='8'/>"
+                            "<integer name='height' value='6'/><integer name='cropOffsetX' value='0'/><integer name='crop_offset_y' value='0'/>"
+                            "<integer name='crop_width' value='8'/><integer name='cropHeight' value='6'/></film></sensor></scene>");
+    EXPECT_EQ(scene.camera.height, 6);
 }
 
 TEST_F(LoaderTest, TransformsApplyInTheOrderInWhichTheyStand) {

@@ -10,9 +10,9 @@
 
 #include <gtest/gtest.h>
 
-#include "statistical/rendering.h"
-#include "statistical/scenes.h"
-#include "statistical/significance.h"
+#include "tests/statistical/rendering.h"
+#include "tests/statistical/scenes.h"
+#include "tests/statistical/significance.h"
 
 namespace photonlab::test {
 namespace {

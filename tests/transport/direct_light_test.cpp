@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "statistical/rendering.h"
-#include "statistical/scenes.h"
+#include "tests/statistical/rendering.h"
+#include "tests/statistical/scenes.h"
 #include "transport/direct_light.h"
 
 namespace photonlab::test {

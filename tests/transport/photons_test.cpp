@@ -5,8 +5,8 @@
 
 #include <cstring>
 
-#include "statistical/rendering.h"
-#include "statistical/scenes.h"
+#include "tests/statistical/rendering.h"
+#include "tests/statistical/scenes.h"
 
 namespace photonlab::test {
 namespace {

@@ -1,0 +1,167 @@
+// OBJ meshes: what the format allows is read exactly, as Mitsuba reads it, and what the parser beneath would take for
+// something else, or drop, is refused with its line.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "scene/loader.h"
+
+namespace photonlab {
+namespace {
+
+const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+/// Meshes written from text to a folder of the test's own, which is removed afterwards.
+class ObjMeshTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = std::filesystem::temp_directory_path() / (std::string("photonlab-ObjMeshTest-") + test->name());
+        std::filesystem::remove_all(folder_);
+        std::filesystem::create_directories(folder_);
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    MeshDescription load(const std::string& text, bool face_normals = true) const {
+        std::ofstream(folder_ / "mesh.obj", std::ios::binary) << text;
+        return load_obj_mesh(folder_ / "mesh.obj", face_normals);
+    }
+
+    /// The message of the error that `text` raises, without its folder.
+    std::string message_of(const std::string& text) const {
+        try {
+            load(text);
+        } catch (const InputError& error) {
+            return std::string(error.what()).substr(folder_.string().size() + 1);
+        }
+        return "no error";
+    }
+
+    std::filesystem::path folder_;
+};
+
+double area_of(const MeshDescription& mesh) {
+    double area = 0.0;
+    for (const auto& t : mesh.triangles)
+        area += 0.5 * (mesh.positions[t.y] - mesh.positions[t.x]).cross(mesh.positions[t.z] - mesh.positions[t.x]).length();
+    return area;
+}
+
+TEST_F(ObjMeshTest, EveryBadLineIsNamed) {
+    std::string long_face = "f";
+    for (int i = 0; i < 256; ++i) long_face += " 1";
+    const std::vector<std::pair<std::string, std::string>> table{
+        {"", "mesh.obj: expected at least one face"},
+        {square, "mesh.obj: expected at least one face"},
+        {"v 0 0\n", "mesh.obj:1: v: expected 3 numbers, got 2"},
+        {"v 0 0 inf\n", "mesh.obj:1: expected a finite number, got \"inf\""},
+        {"v 0 0 1e999\n", "mesh.obj:1: expected a finite number, got \"1e999\""},
+        {"v 0 0 0x10\n", "mesh.obj:1: expected a finite number, got \"0x10\""},
+        {"vt\n", "mesh.obj:1: vt: expected 1 numbers, got 0"},
+        {"vn 0 0 0\n", "mesh.obj:1: vn: expected a direction, got 0 0 0"},
+        {square + "f 1 2\n", "mesh.obj:5: f: expected 3 to 255 corners, got 2"},
+        {square + long_face + "\n", "mesh.obj:5: f: expected 3 to 255 corners, got 256"},
+        {square + "f 1 2 9\n", "mesh.obj:5: a face names vertex 9, but there are 4"},
+        {square + "f 1 2 3\nf 1 2 3 9\n", "mesh.obj:6: a face names vertex 9, but there are 4"},
+        {square + "f 1 2 0\n", "mesh.obj:5: a face names vertex 0, but there are 4"},
+        {square + "f -5 2 3\n", "mesh.obj:5: a face names vertex -5, but there are 4 before it"},
+        {square + "f 1 2 99999999999999999999\n", "mesh.obj:5: expected a whole number, got \"99999999999999999999\""},
+        {square + "f 1 2.5 3\n", "mesh.obj:5: expected a whole number, got \"2.5\""},
+        {square + "f 1 2 3junk\n", "mesh.obj:5: expected a whole number, got \"3junk\""},
+        {square + "f 1 2 \\\n3\n", "mesh.obj:5: expected a whole number, got \"\\\""},
+        {square + "f 1/ 2/ 3/\n", "mesh.obj:5: f: expected a corner as 1, 1/2, 1//3 or 1/2/3, got \"1/\""},
+        {square + "f 1/1/1/1 2 3\n", "mesh.obj:5: a face names texture coordinate 1, but there are 0"},
+        {square + "vn 0 0 1\nf 1//1 2//1 3//2\n", "mesh.obj:6: a face names normal 2, but there are 1"},
+        {square + "vt 0 0\nf 1/1 2/1 3/2\n", "mesh.obj:6: a face names texture coordinate 2, but there are 1"},
+    };
+    for (const auto& [text, message] : table) EXPECT_EQ(message_of(text), message) << text;
+}
+
+TEST_F(ObjMeshTest, LinesEndInEveryWayAndAreCountedTheSame) {
+    for (const std::string end : {"\n", "\r\n", "\r"}) {
+        const std::string vertices = "v 0 0 0" + end + "v 1 0 0" + end + "v 0 1 0" + end;
+        EXPECT_EQ(load(vertices + "f 1 2 3").triangles.size(), 1u);
+        EXPECT_EQ(message_of(vertices + end + "f 1 2 4"), "mesh.obj:5: a face names vertex 4, but there are 3");
+    }
+}
+
+TEST_F(ObjMeshTest, NumbersAreReadExactlyHoweverTheyAreWritten) {
+    const auto mesh = load("v .5 -.25 +2\nv 1.5e+2 3. -4.37114e-008\nv 552.8 5E-1 0 1.0\nv 549.6 0.1 1 0.9 0.8 0.7\nf 1 2 3 4\n");
+    const VectorD expected[] = {{0.5, -0.25, 2.0}, {150.0, 3.0, -4.37114e-8}, {552.8, 0.5, 0.0}, {549.6, 0.1, 1.0}};
+    ASSERT_EQ(mesh.positions.size(), 4u);
+    for (std::size_t i = 0; i < 4; ++i)
+        for (int axis = 0; axis < 3; ++axis)
+            EXPECT_NEAR(mesh.positions[i][axis], expected[i][axis], 1e-15 * std::abs(expected[i][axis])) << i << " " << axis;
+}
+
+TEST_F(ObjMeshTest, PolygonsBecomeFansAroundTheirFirstCorner) {
+    // Not flat, and shorter along its other diagonal: the cut decides the surface, and must be Mitsuba's.
+    const auto mesh = load("v -9 0 0\nv 0 -1 1\nv 9 0 0\nv 0 1 1\nf 1 2 3 4\n");
+    ASSERT_EQ(mesh.triangles.size(), 2u);
+    EXPECT_EQ(mesh.triangles[0], (Imath::Vec3<std::uint32_t>(0, 1, 2)));
+    EXPECT_EQ(mesh.triangles[1], (Imath::Vec3<std::uint32_t>(0, 2, 3)));
+
+    std::string polygon, corners = "f";
+    for (int i = 0; i < 255; ++i) {
+        const double angle = 2.0 * pi * i / 255.0;
+        polygon += "v " + std::to_string(std::cos(angle)) + " " + std::to_string(std::sin(angle)) + " 0\n";
+        corners += " " + std::to_string(i + 1);
+    }
+    const auto round = load(polygon + corners + "\n");
+    EXPECT_EQ(round.triangles.size(), 253u);
+    EXPECT_NEAR(area_of(round), pi, 1e-3);
+}
+
+TEST_F(ObjMeshTest, NegativeIndicesCountBackFromTheirLine) {
+    const auto mesh = load("v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 5 5\n");
+    ASSERT_EQ(mesh.positions.size(), 3u);
+    EXPECT_EQ(mesh.positions[0], VectorD(0, 0, 0));
+    EXPECT_NEAR(area_of(mesh), 0.5, 1e-15);
+}
+
+TEST_F(ObjMeshTest, ObjectsGroupsMaterialsAndCommentsMakeOneMesh) {
+    const auto mesh = load("# a comment\nmtllib none.mtl\no first\nusemtl red#1\n" + square +
+                           "f 1 2 3 # the first\ng second part\ns 1\nf 1 3 4# the second\no empty\n");
+    EXPECT_EQ(mesh.triangles.size(), 2u);
+    EXPECT_EQ(mesh.positions.size(), 4u);
+}
+
+TEST_F(ObjMeshTest, VerticesWithDifferentNormalsAreKeptApart) {
+    const std::string edge = "v 0 0 0\nv 0 0 1\nv 1 0 0\nv 0 1 0\nvn 0 -3 0\nvn -2 0 0\nf 1//1 3//1 2//1\nf 1//2 2//2 4//2\n";
+    EXPECT_EQ(load(edge, true).positions.size(), 4u);
+    const auto mesh = load(edge, false);
+    ASSERT_EQ(mesh.positions.size(), 6u);
+    for (const VectorD& normal : mesh.normals) EXPECT_DOUBLE_EQ(normal.length(), 1.0);
+    EXPECT_EQ(mesh.normals[mesh.triangles[0].x], VectorD(0, -1, 0));
+    EXPECT_EQ(mesh.normals[mesh.triangles[1].x], VectorD(-1, 0, 0));
+}
+
+TEST_F(ObjMeshTest, ComputedNormalsWeighFacesByTheirAngle) {
+    // At the origin: one face spans 90 degrees in two triangles of 45, the other 90 degrees in one. By angle they weigh the
+    // same however they are cut; by area or by count they would not.
+    const auto mesh = load("v 0 0 0\nv 1 0 0\nv 5 5 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\nf 1 4 5\n", false);
+    const VectorD expected = VectorD(1, 0, 1).normalized();
+    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(mesh.normals[mesh.triangles[0].x][axis], expected[axis], 1e-12);
+}
+
+TEST_F(ObjMeshTest, NormalsAndTextureCoordinatesOfSomeCornersAreThoseOfNone) {
+    const auto mesh = load(square + "vn 1 0 0\nvt 0.5 0.5\nf 1/1/1 2/1/1 3/1/1\nf 1 3 4\n", false);
+    EXPECT_TRUE(mesh.texture_coordinates.empty());
+    ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
+    for (const VectorD& normal : mesh.normals) EXPECT_EQ(normal, VectorD(0, 0, 1));
+}
+
+TEST_F(ObjMeshTest, DegenerateFacesGiveNoNormalThatIsNotANumber) {
+    for (const std::string faces : {"f 1 1 1\n", "f 1 2 2\n", "f 1 2 3\nf 1 3 2\n"})
+        for (const VectorD& normal : load(square + faces, false).normals) EXPECT_TRUE(is_finite(normal)) << faces;
+}
+
+}  // namespace
+}  // namespace photonlab
