@@ -97,7 +97,7 @@ private:
         if (type == "diffuse") {
             for (const XmlElement* object : properties.objects())
                 throw InputError(object->place, fmt::format("diffuse: expected reflectance as a colour, got <{}>", object->tag));
-            const ColorD reflectance = properties.color("reflectance").value_or(ColorD(0.5));
+            const ColorD reflectance = properties.reflectance("reflectance").value_or(ColorD(0.5));
             properties.require_all_known();
             if (std::min({reflectance.x, reflectance.y, reflectance.z}) < 0.0 || max_channel(Color(reflectance)) > 1.0f)
                 throw InputError(properties.place_of("reflectance"), fmt::format("reflectance: expected values in [0, 1], got {} {} {}",
@@ -236,7 +236,7 @@ private:
     // Lights
 
     static ColorD read_light(Properties& properties, const std::string& name, const ColorD& missing) {
-        const ColorD light = properties.color(name).value_or(missing);
+        const ColorD light = properties.emission(name).value_or(missing);
         if (std::min({light.x, light.y, light.z}) < 0.0)
             throw InputError(properties.place_of(name), fmt::format("{}: expected values of at least 0, got {} {} {}", name, light.x, light.y, light.z));
         return light;

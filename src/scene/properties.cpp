@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "core/error.h"
+#include "scene/spectrum.h"
 #include "scene/transform.h"
 
 namespace photonlab {
@@ -12,6 +13,7 @@ namespace {
 
 const std::set<std::string> value_tags{"float",    "integer", "boolean", "string", "rgb", "srgb",
                                        "spectrum", "point",   "vector",  "transform"};
+const std::set<std::string> color_tags{"float", "rgb", "spectrum", "srgb"};
 const std::set<std::string> object_tags{"bsdf",   "emitter", "film",    "integrator", "medium", "phase", "ref",
                                         "rfilter", "sampler", "sensor", "shape",      "texture"};
 
@@ -29,11 +31,9 @@ ColorD parse_hexadecimal(const std::string& text, const std::string& place) {
     return color;
 }
 
-ColorD parse_color(const XmlElement& element) {
+ColorD parse_rgb(const XmlElement& element) {
     const std::string& text = element.require("value");
     if (!text.empty() && text.front() == '#') return parse_hexadecimal(text, element.place);
-    if (text.find(':') != std::string::npos)
-        throw InputError(element.place, "expected linear RGB: spectra by wavelength are not known here");
     const std::vector<double> numbers = parse_numbers(text, element.place);
     if (numbers.size() != 1 && numbers.size() != 3)
         throw InputError(element.place, fmt::format("expected 1 or 3 numbers, got \"{}\"", text));
@@ -42,6 +42,15 @@ ColorD parse_color(const XmlElement& element) {
         return element.tag == "srgb" ? srgb_to_linear(value) : value;
     };
     return {channel(0), channel(1), channel(2)};
+}
+
+bool is_by_wavelength(const XmlElement& element) {
+    return element.tag == "spectrum" && element.require("value").find(':') != std::string::npos;
+}
+
+/// A single value that stands for all wavelengths.
+bool is_uniform_spectrum(const XmlElement& element) {
+    return element.tag == "spectrum" && parse_numbers(element.require("value"), element.place).size() == 1;
 }
 
 }  // namespace
@@ -95,10 +104,28 @@ std::optional<std::string> Properties::text(const std::string& name) {
     return element->require("value");
 }
 
-std::optional<ColorD> Properties::color(const std::string& name) {
-    const XmlElement* element = take(name, {"float", "rgb", "spectrum", "srgb"});
+std::optional<ColorD> Properties::reflectance(const std::string& name) {
+    const XmlElement* element = take(name, color_tags);
     if (!element) return std::nullopt;
-    return parse_color(*element);
+    if (!is_by_wavelength(*element)) return parse_rgb(*element);
+    const Spectrum spectrum = parse_spectrum(element->require("value"), element->place);
+    for (const double value : spectrum.values)
+        if (value < 0.0 || value > 1.0)
+            throw InputError(element->place, fmt::format("{}: expected values in [0, 1], got {}", name, value));
+    return reflectance_to_rgb(spectrum);
+}
+
+std::optional<ColorD> Properties::emission(const std::string& name) {
+    const XmlElement* element = take(name, color_tags);
+    if (!element) return std::nullopt;
+    if (is_by_wavelength(*element)) {
+        const Spectrum spectrum = parse_spectrum(element->require("value"), element->place);
+        for (const double value : spectrum.values)
+            if (value < 0.0) throw InputError(element->place, fmt::format("{}: expected values of at least 0, got {}", name, value));
+        return emission_to_rgb(spectrum);
+    }
+    if (is_uniform_spectrum(*element)) return equal_energy_white() * parse_rgb(*element);
+    return parse_rgb(*element);
 }
 
 std::optional<VectorD> Properties::vector(const std::string& name) {

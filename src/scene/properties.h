@@ -23,7 +23,9 @@ public:
     std::optional<long> integer(const std::string& name);
     std::optional<bool> boolean(const std::string& name);
     std::optional<std::string> text(const std::string& name);
-    std::optional<ColorD> color(const std::string& name);    ///< linear RGB, from rgb, srgb, spectrum or float
+    /// Linear RGB, from rgb, srgb, spectrum or float; what a spectrum is depends on whether it reflects or emits.
+    std::optional<ColorD> reflectance(const std::string& name);
+    std::optional<ColorD> emission(const std::string& name);
     std::optional<VectorD> vector(const std::string& name);
     std::optional<Matrix> transform(const std::string& name);
 

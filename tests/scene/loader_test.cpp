@@ -109,8 +109,14 @@ TEST_F(LoaderTest, EveryMistakeGetsItsMessage) {
          "scene.xml:3: expected a finite number, got \"nan\""},
         {scene("<bsdf type='diffuse'>\n<rgb name='reflectance' value='#12345g'/></bsdf>"),
          "scene.xml:3: expected a colour as #rrggbb, got \"#12345g\""},
-        {scene("<bsdf type='diffuse'>\n<spectrum name='reflectance' value='400:0.1, 700:0.2'/></bsdf>"),
-         "scene.xml:3: expected linear RGB: spectra by wavelength are not known here"},
+        {scene("<bsdf type='diffuse'>\n<spectrum name='reflectance' value='400:0.1 700'/></bsdf>"),
+         "scene.xml:3: expected a spectrum as at least two pairs wavelength:value, got \"400:0.1 700\""},
+        {scene("<bsdf type='diffuse'>\n<spectrum name='reflectance' value='500:0.1, 500:0.2'/></bsdf>"),
+         "scene.xml:3: expected rising wavelengths, got 500 after 500"},
+        {scene("<bsdf type='diffuse'>\n<spectrum name='reflectance' value='400:0.1, 700:1.2'/></bsdf>"),
+         "scene.xml:3: reflectance: expected values in [0, 1], got 1.2"},
+        {scene("<emitter type='point'>\n<spectrum name='intensity' value='400:1, 700:-1'/></emitter>"),
+         "scene.xml:3: intensity: expected values of at least 0, got -1"},
         {scene("<bsdf type='diffuse'>\n<string name='reflectance' value='red'/></bsdf>"),
          "scene.xml:3: property \"reflectance\": expected <float> or <rgb> or <spectrum> or <srgb>, got <string>"},
         {scene("<bsdf type='diffuse'>\n<rgb name='reflectance' value='0'/>\n<rgb name='reflectance' value='0'/></bsdf>"),
@@ -384,6 +390,37 @@ TEST_F(LoaderTest, ColoursAreLinearUnlessTheySayOtherwise) {
     EXPECT_NEAR(reflectance("<srgb name='reflectance' value='0.5'/>").x, 0.2140411f, 1e-6);
     EXPECT_NEAR(reflectance("<rgb name='reflectance' value='#ff8000'/>").y, 0.2158605f, 1e-6);
     EXPECT_FLOAT_EQ(reflectance("").x, 0.5f);
+}
+
+TEST_F(LoaderTest, ASpectrumThatEmitsIsEqualEnergyWhiteAndOneThatReflectsIsGrey) {
+    const auto scene = load_with_sensor("<shape type='sphere'>"
+                                        "<bsdf type='diffuse'><spectrum name='reflectance' value='300:0.25, 900:0.25'/></bsdf>"
+                                        "<emitter type='area'><spectrum name='radiance' value='300:2, 900:2'/></emitter></shape>"
+                                        "<emitter type='point'><spectrum name='intensity' value='2'/></emitter>");
+    const Color reflectance = std::get<Diffuse>(scene.materials.at(scene.shapes.at(0).material).bsdf).reflectance;
+    for (const float channel : {reflectance.x, reflectance.y, reflectance.z}) EXPECT_NEAR(channel, 0.25, 1e-4);
+    const ColorD white(1.20479, 0.94829, 0.90892);  // XYZ (1, 1, 1) in linear sRGB
+    for (int channel = 0; channel < 3; ++channel) {
+        EXPECT_NEAR((*scene.shapes.at(0).radiance)[channel], 2.0 * white[channel], 2e-3);
+        EXPECT_NEAR(scene.point_lights.at(0).intensity[channel], 2.0 * white[channel], 1e-4);
+    }
+}
+
+// The red wall as measured at Cornell, and the linear sRGB that Mitsuba's documentation prints for it ("Scene parsing and
+// parameters", version 2, which weights with the observer alone).
+TEST_F(LoaderTest, TheMeasuredRedWallHasItsPublishedRgb) {
+    const auto scene = load_with_sensor(
+        "<emitter type='point'><spectrum name='intensity' value='"
+        "400:0.04, 404:0.046, 408:0.048, 412:0.053, 416:0.049, 420:0.05, 424:0.053, 428:0.055, 432:0.057, 436:0.056, 440:0.059, "
+        "444:0.057, 448:0.061, 452:0.061, 456:0.06, 460:0.062, 464:0.062, 468:0.062, 472:0.061, 476:0.062, 480:0.06, 484:0.059, "
+        "488:0.057, 492:0.058, 496:0.058, 500:0.058, 504:0.056, 508:0.055, 512:0.056, 516:0.059, 520:0.057, 524:0.055, 528:0.059, "
+        "532:0.059, 536:0.058, 540:0.059, 544:0.061, 548:0.061, 552:0.063, 556:0.063, 560:0.067, 564:0.068, 568:0.072, 572:0.08, "
+        "576:0.09, 580:0.099, 584:0.124, 588:0.154, 592:0.192, 596:0.255, 600:0.287, 604:0.349, 608:0.402, 612:0.443, 616:0.487, "
+        "620:0.513, 624:0.558, 628:0.584, 632:0.62, 636:0.606, 640:0.609, 644:0.651, 648:0.612, 652:0.61, 656:0.65, 660:0.638, "
+        "664:0.627, 668:0.62, 672:0.63, 676:0.628, 680:0.642, 684:0.639, 688:0.657, 692:0.639, 696:0.635, 700:0.642'/></emitter>");
+    EXPECT_NEAR(scene.point_lights.at(0).intensity.x, 0.569717, 5e-5);
+    EXPECT_NEAR(scene.point_lights.at(0).intensity.y, 0.0430141, 5e-5);
+    EXPECT_NEAR(scene.point_lights.at(0).intensity.z, 0.0443234, 5e-5);
 }
 
 TEST_F(LoaderTest, ShapesWithoutABsdfAreGreyAndPointLightsHaveAPlace) {
