@@ -72,7 +72,7 @@ def logarithmic(axis, low, high, base_two=False):
         powers = [2 ** power for power in range(64) if low <= 2 ** power <= high]
         ticks = every_nth(powers, most=8)
     else:
-        for digits in [(1, 1.5, 2, 3, 5, 7), (1, 2, 5), (1,)]:
+        for digits in [(1, 1.5, 2, 3, 5, 7), (1, 2, 5), (1, 3), (1,)]:
             ticks = [digit * 10.0 ** power for power in range(-30, 31) for digit in digits
                      if low <= digit * 10.0 ** power <= high]
             if len(ticks) <= 6:

@@ -8,8 +8,8 @@
 
 #include "app/commands.h"
 #include "app/options.h"
-#include "experiment/experiment_file.h"
 #include "core/files.h"
+#include "experiment/experiment_file.h"
 #include "experiment/progress.h"
 #include "experiment/recorder.h"
 #include "experiment/reference.h"

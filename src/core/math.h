@@ -16,17 +16,21 @@
 
 namespace photonlab {
 
-using Vector = Imath::V3f;               ///< position in the unit box, or direction
-using VectorD = Imath::V3d;              ///< position in scene units
-using Matrix = Imath::M44d;              ///< row-vector convention (Imath's): p' = p * M
-using Color = Imath::Color3<float>;      ///< reflectance, photon power, linear RGB
-using ColorD = Imath::Color3<double>;    ///< radiance or a sum of such, linear RGB
+using Vector = Imath::V3f;             ///< position in the unit box, or direction
+using VectorD = Imath::V3d;            ///< position in scene units
+using Matrix = Imath::M44d;            ///< row-vector convention (Imath's): p' = p * M
+using Color = Imath::Color3<float>;    ///< reflectance, photon power, linear RGB
+using ColorD = Imath::Color3<double>;  ///< radiance or a sum of such, linear RGB
 
 inline constexpr double pi = 3.14159265358979323846;
 inline constexpr float infinity = std::numeric_limits<float>::infinity();
 
-inline float max_channel(const Color& color) { return std::max({color.x, color.y, color.z}); }
-inline double mean_channel(const ColorD& color) { return (color.x + color.y + color.z) / 3.0; }
+inline float max_channel(const Color& color) {
+    return std::max({color.x, color.y, color.z});
+}
+inline double mean_channel(const ColorD& color) {
+    return (color.x + color.y + color.z) / 3.0;
+}
 
 template <typename T>
 bool is_finite(const Imath::Vec3<T>& v) {
@@ -44,12 +48,8 @@ struct Frame {
     Vector bitangent;
     Vector normal;
 
-    Vector to_local(const Vector& world) const {
-        return {world.dot(tangent), world.dot(bitangent), world.dot(normal)};
-    }
-    Vector to_world(const Vector& local) const {
-        return tangent * local.x + bitangent * local.y + normal * local.z;
-    }
+    Vector to_local(const Vector& world) const { return {world.dot(tangent), world.dot(bitangent), world.dot(normal)}; }
+    Vector to_world(const Vector& local) const { return tangent * local.x + bitangent * local.y + normal * local.z; }
 };
 
 /// Frame around `normal` (unit length), without branches or a preferred axis.

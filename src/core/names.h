@@ -31,7 +31,8 @@ std::string name_of(Enumeration value) {
 template <typename Enumeration>
 std::string all_names() {
     std::string list;
-    for (const auto& choice : choice_names(Enumeration{})) list += (list.empty() ? "" : ", ") + std::string(choice.name);
+    for (const auto& choice : choice_names(Enumeration{}))
+        list += (list.empty() ? "" : ", ") + std::string(choice.name);
     return list;
 }
 
@@ -40,8 +41,8 @@ template <typename Enumeration>
 Enumeration parse_choice(std::string_view what, std::string_view name) {
     for (const auto& choice : choice_names(Enumeration{}))
         if (choice.name == name) return choice.value;
-    throw InputError("unknown " + std::string(what) + " \"" + std::string(name) + "\"; known here: " +
-                     all_names<Enumeration>());
+    throw InputError("unknown " + std::string(what) + " \"" + std::string(name) +
+                     "\"; known here: " + all_names<Enumeration>());
 }
 
 }  // namespace photonlab

@@ -32,7 +32,9 @@ struct BlockRange {
     std::size_t end;
 };
 
-inline std::size_t block_count(std::size_t count, std::size_t size) { return (count + size - 1) / size; }
+inline std::size_t block_count(std::size_t count, std::size_t size) {
+    return (count + size - 1) / size;
+}
 
 inline BlockRange block_range(std::size_t block, std::size_t count, std::size_t size) {
     const std::size_t begin = block * size;

@@ -33,7 +33,7 @@ public:
         flux_ += ColorD(f * photon.power) * weight;
     }
 
-    ColorD flux() const { return flux_; }               ///< relative to Scene::total_power, per steradian
+    ColorD flux() const { return flux_; }  ///< relative to Scene::total_power, per steradian
     std::uint64_t count() const { return count_; }
 
 private:
@@ -46,8 +46,8 @@ private:
 };
 
 /// Everything within `radius` (unit box), weighted by the kernel.
-inline FluxSum gather_within(const PhotonMap& map, const Scene& scene, const HitPoint& point, double radius, Kernel kernel,
-                             int max_depth) {
+inline FluxSum gather_within(const PhotonMap& map, const Scene& scene, const HitPoint& point, double radius,
+                             Kernel kernel, int max_depth) {
     FluxSum sum(scene, point, max_depth);
     const double inverse_squared_radius = 1.0 / (radius * radius);
     map.within(point.position, point.normal, radius, [&](const Photon& photon, double squared_distance) {

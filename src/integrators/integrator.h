@@ -25,11 +25,11 @@ using StageListener = std::function<void(Stage)>;
 /// What an integrator can say of itself after a pass or an estimate. Radii in scene units; empty where the method has
 /// no such thing.
 struct IntegratorReport {
-    std::uint64_t photons_gathered = 0;       ///< photons accepted at hit points, summed over points and passes
-    std::uint64_t map_bytes = 0;              ///< photons, their index and buffers, at their largest so far
-    std::uint64_t hit_point_bytes = 0;        ///< hit points and their statistics
-    std::uint64_t nonfinite = 0;              ///< photons refused because they could not be indexed
-    std::optional<double> radius_min;         ///< over hit points, of the last gather (photonmapper) or for the next (ppm)
+    std::uint64_t photons_gathered = 0;  ///< photons accepted at hit points, summed over points and passes
+    std::uint64_t map_bytes = 0;         ///< photons, their index and buffers, at their largest so far
+    std::uint64_t hit_point_bytes = 0;   ///< hit points and their statistics
+    std::uint64_t nonfinite = 0;         ///< photons refused because they could not be indexed
+    std::optional<double> radius_min;    ///< over hit points, of the last gather (photonmapper) or for the next (ppm)
     std::optional<double> radius_mean;
     std::optional<double> radius_max;
 };
@@ -40,7 +40,7 @@ struct IntegratorContext {
     const HitPoints& hit_points;
     std::uint64_t seed = 1;
     int threads = 1;
-    RandomPurpose path_purpose = RandomPurpose::CameraPaths;    ///< `path` only: a reference's half has its own
+    RandomPurpose path_purpose = RandomPurpose::CameraPaths;  ///< `path` only: a reference's half has its own
 };
 
 class Integrator {
@@ -50,8 +50,8 @@ public:
     /// Takes pass `pass`, counted from 1 and called in order, with the photons of that pass (none for `path`).
     virtual void run_pass(std::uint64_t pass, const PhotonPass& photons, const StageListener& enter) = 0;
 
-    /// The image after the passes so far, layers "emission", "direct" and "gathered". After no pass at all: emission, and
-    /// direct light sampled once for this alone. Changes nothing that later passes depend on.
+    /// The image after the passes so far, layers "emission", "direct" and "gathered". After no pass at all: emission,
+    /// and direct light sampled once for this alone. Changes nothing that later passes depend on.
     virtual Image estimate(const StageListener& enter) = 0;
 
     virtual IntegratorReport report() const = 0;

@@ -1,4 +1,5 @@
-// What the integrators share: from values at hit points to the layers of an image, and direct light averaged over passes.
+// What the integrators share: from values at hit points to the layers of an image, and direct light averaged over
+// passes.
 
 #pragma once
 
@@ -10,10 +11,10 @@
 
 namespace photonlab {
 
-inline constexpr std::size_t hit_points_per_block = 256;    ///< handed to a thread at a time
+inline constexpr std::size_t hit_points_per_block = 256;  ///< handed to a thread at a time
 
-/// Sums `radiance` (one value a hit point) times `scale` into pixels, each value times its point's weight, in the order of
-/// the points.
+/// Sums `radiance` (one value a hit point) times `scale` into pixels, each value times its point's weight, in the order
+/// of the points.
 std::vector<Color> to_pixels(const HitPoints& hit_points, const std::vector<ColorD>& radiance, double scale);
 
 /// The image of three layers; emission comes from the hit points.
@@ -39,10 +40,10 @@ private:
     void add_samples(std::uint64_t pass, std::vector<ColorD>& sums) const;
 
     const IntegratorContext context_;
-    int samples_;                  // 0: photons carry direct light
+    int samples_;  // 0: photons carry direct light
     int max_depth_;
     std::uint64_t passes_ = 0;
-    std::vector<ColorD> sums_;     // one a hit point
+    std::vector<ColorD> sums_;  // one a hit point
 };
 
 }  // namespace photonlab

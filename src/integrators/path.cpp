@@ -9,7 +9,7 @@ namespace photonlab {
 
 namespace {
 
-constexpr std::uint32_t roulette_after = 3;      // reflections: most paths of a bright scene matter until then
+constexpr std::uint32_t roulette_after = 3;  // reflections: most paths of a bright scene matter until then
 constexpr float highest_survival = 0.99f;
 
 /// What one path found: light reflected once at the hit point, and light reflected there after other reflections.
@@ -118,7 +118,7 @@ private:
 
     const int max_depth_;
     const IntegratorContext context_;
-    std::vector<PathSample> sums_;    // one a hit point, over passes
+    std::vector<PathSample> sums_;  // one a hit point, over passes
     std::uint64_t passes_ = 0;
 };
 

@@ -18,8 +18,9 @@ public:
                                                       : default_share_of_scene * bounding_radius;
         max_radius_ = std::max(max_radius, PhotonMap::minimum_radius);
         for (std::size_t i = 0; i < radii_.size(); ++i)
-            radii_[i] = settings.mode == GatherMode::Radius ? initial_radius(settings, context.scene, context.hit_points, i)
-                                                            : max_radius_;
+            radii_[i] = settings.mode == GatherMode::Radius
+                            ? initial_radius(settings, context.scene, context.hit_points, i)
+                            : max_radius_;
     }
 
     void run_pass(std::uint64_t pass, const PhotonPass& photons, const StageListener& enter) override {
@@ -38,8 +39,8 @@ public:
 
     IntegratorReport report() const override {
         IntegratorReport report = report_;
-        report.hit_point_bytes = context_.hit_points.points.size() * sizeof(HitPoint) + radii_.size() * sizeof(double) +
-                                 direct_.bytes();
+        report.hit_point_bytes =
+            context_.hit_points.points.size() * sizeof(HitPoint) + radii_.size() * sizeof(double) + direct_.bytes();
         set_radii(report, radii_, context_.scene.unit_length);
         return report;
     }
@@ -79,11 +80,11 @@ private:
     /// The k nearest; `radius` becomes that of the disc to divide by.
     FluxSum gather_nearest(const PhotonMap& map, const HitPoint& point, double& radius) const {
         FluxSum sum(context_.scene, point, settings_.max_depth);
-        const NearestPhotons nearest =
-            map.nearest(point.position, point.normal, static_cast<std::size_t>(settings_.k), max_radius_,
-                        [&](const Photon& photon, double squared_distance, double squared_radius) {
-                            sum.add(photon, kernel_weight(settings_.kernel, std::min(1.0, squared_distance / squared_radius)));
-                        });
+        const NearestPhotons nearest = map.nearest(
+            point.position, point.normal, static_cast<std::size_t>(settings_.k), max_radius_,
+            [&](const Photon& photon, double squared_distance, double squared_radius) {
+                sum.add(photon, kernel_weight(settings_.kernel, std::min(1.0, squared_distance / squared_radius)));
+            });
         radius = std::sqrt(nearest.squared_radius);
         return sum;
     }
@@ -91,9 +92,9 @@ private:
     const MethodSettings settings_;
     const IntegratorContext context_;
     DirectLight direct_;
-    std::vector<double> radii_;      // one a hit point, unit box: of the last gather; mode `radius`: fixed
+    std::vector<double> radii_;  // one a hit point, unit box: of the last gather; mode `radius`: fixed
     double max_radius_ = 0.0;
-    std::vector<Photon> photons_;    // of all passes, in their order
+    std::vector<Photon> photons_;  // of all passes, in their order
     std::uint64_t paths_emitted_ = 0;
     IntegratorReport report_;
 };

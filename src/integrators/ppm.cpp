@@ -15,7 +15,10 @@ constexpr double smallest_squared_radius = PhotonMap::minimum_radius * PhotonMap
 class ProgressivePhotonMapping : public Integrator {
 public:
     ProgressivePhotonMapping(const MethodSettings& settings, const IntegratorContext& context)
-        : settings_(settings), context_(context), direct_(context, settings), statistics_(context.hit_points.points.size()) {
+        : settings_(settings),
+          context_(context),
+          direct_(context, settings),
+          statistics_(context.hit_points.points.size()) {
         for (std::size_t i = 0; i < statistics_.size(); ++i) {
             const double radius = initial_radius(settings, context.scene, context.hit_points, i);
             statistics_[i].squared_radius = radius * radius;
@@ -34,7 +37,8 @@ public:
         parallel_for(blocks, context_.threads, [&](std::size_t block) {
             const BlockRange range = block_range(block, statistics_.size(), hit_points_per_block);
             for (std::size_t i = range.begin; i < range.end; ++i)
-                gathered[block] += update(context_.hit_points.points[i], map, photons.paths_emitted, pass, statistics_[i]);
+                gathered[block] +=
+                    update(context_.hit_points.points[i], map, photons.paths_emitted, pass, statistics_[i]);
         });
         for (const std::uint64_t count : gathered) report_.photons_gathered += count;
 
@@ -87,7 +91,7 @@ private:
     const MethodSettings settings_;
     const IntegratorContext context_;
     DirectLight direct_;
-    std::vector<GatherStatistics> statistics_;    // joined with the hit points by index
+    std::vector<GatherStatistics> statistics_;  // joined with the hit points by index
     IntegratorReport report_;
 };
 

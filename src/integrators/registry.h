@@ -14,8 +14,8 @@ namespace photonlab {
 
 struct IntegratorKind {
     std::string_view name;
-    bool needs_photons;                           ///< false: run_pass() is given an empty pass, and none is traced
-    std::vector<std::string_view> settings;       ///< fields of MethodSettings that it uses, by their names
+    bool needs_photons;                      ///< false: run_pass() is given an empty pass, and none is traced
+    std::vector<std::string_view> settings;  ///< fields of MethodSettings that it uses, by their names
     std::unique_ptr<Integrator> (*make)(const MethodSettings&, const IntegratorContext&);
 };
 
@@ -24,8 +24,8 @@ const std::vector<IntegratorKind>& integrator_kinds();
 /// The kind called `name`; InputError names the known ones.
 const IntegratorKind& find_integrator_kind(std::string_view name);
 
-/// True when the method uses the field of MethodSettings called `field`, given its other choices as well (k only in mode
-/// "nearest", direct_samples only with direct "sampled", ...).
+/// True when the method uses the field of MethodSettings called `field`, given its other choices as well (k only in
+/// mode "nearest", direct_samples only with direct "sampled", ...).
 bool uses_setting(const MethodSettings& settings, std::string_view field);
 
 /// Throws InputError when a value is out of its range.

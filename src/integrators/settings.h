@@ -17,37 +17,41 @@ namespace photonlab {
 
 /// How photonmapper finds its photons. [Jensen 2001, chapter 7]
 enum class GatherMode {
-    Radius,     ///< all within a fixed radius: variance vanishes with the number of photons, bias stays
-    Nearest,    ///< the k nearest within a maximum radius: bias falls with the number of photons, variance stays near 1/k
+    Radius,   ///< all within a fixed radius: variance vanishes with the number of photons, bias stays
+    Nearest,  ///< the k nearest within a maximum radius: bias falls with the number of photons, variance stays near 1/k
 };
 inline constexpr std::array gather_mode_names{ChoiceName<GatherMode>{GatherMode::Radius, "radius"},
                                               ChoiceName<GatherMode>{GatherMode::Nearest, "nearest"}};
-constexpr const auto& choice_names(GatherMode) { return gather_mode_names; }
+constexpr const auto& choice_names(GatherMode) {
+    return gather_mode_names;
+}
 
 /// Where light that comes straight from a light source is found.
 enum class DirectMode {
-    Sampled,    ///< by shadow rays at the hit points, anew in every pass; in the `direct` layer
-    Photons,    ///< by photons, as in the 2008 paper; in the `gathered` layer, and `direct` is 0
+    Sampled,  ///< by shadow rays at the hit points, anew in every pass; in the `direct` layer
+    Photons,  ///< by photons, as in the 2008 paper; in the `gathered` layer, and `direct` is 0
 };
 inline constexpr std::array direct_mode_names{ChoiceName<DirectMode>{DirectMode::Sampled, "sampled"},
                                               ChoiceName<DirectMode>{DirectMode::Photons, "photons"}};
-constexpr const auto& choice_names(DirectMode) { return direct_mode_names; }
+constexpr const auto& choice_names(DirectMode) {
+    return direct_mode_names;
+}
 
 struct MethodSettings {
-    std::string integrator = "ppm";                      ///< a name of integrator_kinds()
-    GatherMode mode = GatherMode::Radius;                ///< photonmapper
-    ScheduleName schedule = ScheduleName::Hachisuka;     ///< ppm
-    double alpha = 0.7;                                  ///< ppm: share of photons kept a pass, in (0, 1]
-    int k = 120;                                         ///< photonmapper, nearest: photons searched, >= 2
-    std::optional<double> radius = std::nullopt;         ///< initial (ppm) or fixed (photonmapper, radius) gather radius,
-                                                         ///< scene units, > 0; empty: three times the pixel's footprint
-    std::optional<double> max_radius = std::nullopt;     ///< photonmapper, nearest: scene units, > 0; empty: 5% of the
-                                                         ///< scene's bounding radius
-    Kernel kernel = Kernel::Disc;                        ///< ppm, photonmapper
-    DirectMode direct = DirectMode::Sampled;             ///< ppm, photonmapper
-    int direct_samples = 1;                              ///< shadow rays a hit point and pass, >= 1
-    int max_depth = -1;                                  ///< edges from camera to light; -1 is unlimited
-    std::uint64_t photons_per_pass = 100'000;            ///< paths emitted a pass
+    std::string integrator = "ppm";                   ///< a name of integrator_kinds()
+    GatherMode mode = GatherMode::Radius;             ///< photonmapper
+    ScheduleName schedule = ScheduleName::Hachisuka;  ///< ppm
+    double alpha = 0.7;                               ///< ppm: share of photons kept a pass, in (0, 1]
+    int k = 120;                                      ///< photonmapper, nearest: photons searched, >= 2
+    std::optional<double> radius = std::nullopt;      ///< initial (ppm) or fixed (photonmapper, radius) gather radius,
+                                                      ///< scene units, > 0; empty: three times the pixel's footprint
+    std::optional<double> max_radius = std::nullopt;  ///< photonmapper, nearest: scene units, > 0; empty: 5% of the
+                                                      ///< scene's bounding radius
+    Kernel kernel = Kernel::Disc;                     ///< ppm, photonmapper
+    DirectMode direct = DirectMode::Sampled;          ///< ppm, photonmapper
+    int direct_samples = 1;                           ///< shadow rays a hit point and pass, >= 1
+    int max_depth = -1;                               ///< edges from camera to light; -1 is unlimited
+    std::uint64_t photons_per_pass = 100'000;         ///< paths emitted a pass
 };
 
 }  // namespace photonlab

@@ -18,41 +18,41 @@ namespace photonlab {
 /// Triangles over shared vertices, counter-clockwise seen from outside.
 struct MeshDescription {
     std::vector<VectorD> positions;
-    std::vector<VectorD> normals;                   ///< one a vertex, unit length; empty: flat shading
-    std::vector<Imath::V2d> texture_coordinates;    ///< one a vertex, or empty
+    std::vector<VectorD> normals;                 ///< one a vertex, unit length; empty: flat shading
+    std::vector<Imath::V2d> texture_coordinates;  ///< one a vertex, or empty
     std::vector<Imath::Vec3<std::uint32_t>> triangles;
 };
 
 struct SphereDescription {
     VectorD centre;
-    double radius = 1.0;          ///< > 0
-    bool flip_normals = false;    ///< true: the normal points to the centre
+    double radius = 1.0;        ///< > 0
+    bool flip_normals = false;  ///< true: the normal points to the centre
 };
 
 struct DiskDescription {
     VectorD centre;
-    VectorD normal;         ///< unit length
-    double radius = 1.0;    ///< > 0
+    VectorD normal;       ///< unit length
+    double radius = 1.0;  ///< > 0
 };
 
 struct ShapeDescription {
     std::variant<MeshDescription, SphereDescription, DiskDescription> geometry;
-    std::size_t material = 0;           ///< index into SceneDescription::materials
-    std::optional<ColorD> radiance;     ///< of an area light: W/(m^2 sr), emitted to the side of the normal
-    std::string place;                  ///< "file:line" for messages
+    std::size_t material = 0;        ///< index into SceneDescription::materials
+    std::optional<ColorD> radiance;  ///< of an area light: W/(m^2 sr), emitted to the side of the normal
+    std::string place;               ///< "file:line" for messages
 };
 
 struct PointLightDescription {
     VectorD position;
-    ColorD intensity;       ///< W/sr
+    ColorD intensity;  ///< W/sr
     std::string place;
 };
 
 /// A pinhole camera. Camera space is Mitsuba's: z forward, y up, x to the left of the image.
 struct CameraDescription {
-    Matrix to_world;                ///< camera space to world, no shear; Imath's row-vector convention
-    double fov_x = 45.0;            ///< full horizontal field of view, degrees, in (0, 180)
-    int width = 768;                ///< pixels; changing the resolution keeps fov_x as given here
+    Matrix to_world;      ///< camera space to world, no shear; Imath's row-vector convention
+    double fov_x = 45.0;  ///< full horizontal field of view, degrees, in (0, 180)
+    int width = 768;      ///< pixels; changing the resolution keeps fov_x as given here
     int height = 576;
 };
 
@@ -61,10 +61,10 @@ struct SceneDescription {
     std::vector<ShapeDescription> shapes;
     std::vector<PointLightDescription> point_lights;
     CameraDescription camera;
-    int max_depth = -1;                 ///< the scene file's own integrator setting; -1 is unlimited
-    std::string name;                   ///< of the scene's folder, or of the file if that is not scene.xml
-    std::string hash;                   ///< hexadecimal, of every byte that was read: XML, includes, meshes
-    std::vector<std::string> notes;     ///< what was read past, one sentence each
+    int max_depth = -1;              ///< the scene file's own integrator setting; -1 is unlimited
+    std::string name;                ///< of the scene's folder, or of the file if that is not scene.xml
+    std::string hash;                ///< hexadecimal, of every byte that was read: XML, includes, meshes
+    std::vector<std::string> notes;  ///< what was read past, one sentence each
 };
 
 }  // namespace photonlab

@@ -17,9 +17,9 @@ std::uint32_t choose_emitter(const Scene& scene, double u);
 
 /// Light leaving an emitter: the start of a photon path.
 struct EmissionSample {
-    Ray ray;            ///< its origin already moved off the emitter's surface
-    Color weight;       ///< flux of this sample relative to Scene::total_power, the choice of light included:
-                        ///< its mean over samples and channels is 1
+    Ray ray;       ///< its origin already moved off the emitter's surface
+    Color weight;  ///< flux of this sample relative to Scene::total_power, the choice of light included:
+                   ///< its mean over samples and channels is 1
 };
 
 /// Emits from `emitter`: position uniform on its area, direction by the cosine (area light) or uniform (point light).
@@ -28,11 +28,11 @@ EmissionSample sample_emission(const Scene& scene, std::uint32_t emitter, const 
 
 /// A point on an emitter as seen from a receiver.
 struct DirectSample {
-    Vector position;           ///< on the emitter, already moved off its surface towards the receiver
-    Vector direction;          ///< unit, from the receiver to `position`
-    ColorD radiance;           ///< area light: radiance towards the receiver. Point light: intensity / distance^2
-    double density;            ///< per steradian at the receiver, without the choice of light; 1 for a point light
-    bool is_delta;             ///< a point light: no other technique can find it
+    Vector position;   ///< on the emitter, already moved off its surface towards the receiver
+    Vector direction;  ///< unit, from the receiver to `position`
+    ColorD radiance;   ///< area light: radiance towards the receiver. Point light: intensity / distance^2
+    double density;    ///< per steradian at the receiver, without the choice of light; 1 for a point light
+    bool is_delta;     ///< a point light: no other technique can find it
 };
 
 /// Draws a point on `emitter` to light `receiver`: spheres by the solid angle of their visible cap, other shapes

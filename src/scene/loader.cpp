@@ -1,5 +1,5 @@
-// The plugins of a Mitsuba scene file that photonlab knows, with Mitsuba's semantics. Whatever is not in these lists is an
-// error that says what would have been accepted.
+// The plugins of a Mitsuba scene file that photonlab knows, with Mitsuba's semantics. Whatever is not in these lists is
+// an error that says what would have been accepted.
 
 #include "scene/loader.h"
 
@@ -42,8 +42,10 @@ public:
                 read_sensor(element);
                 has_sensor = true;
             } else {
-                throw InputError(element.place, fmt::format("unknown element <{}> in <scene>; known here: bsdf, default, "
-                                                            "emitter, include, integrator, sensor, shape", element.tag));
+                throw InputError(element.place,
+                                 fmt::format("unknown element <{}> in <scene>; known here: bsdf, default, "
+                                             "emitter, include, integrator, sensor, shape",
+                                             element.tag));
             }
         }
         if (!has_sensor) throw InputError(root.place, "expected a <sensor type=\"perspective\"> in the scene");
@@ -51,7 +53,8 @@ public:
 
 private:
     [[noreturn]] static void fail_unknown(const XmlElement& element, std::string_view known) {
-        throw InputError(element.place, fmt::format("unknown {} \"{}\"; known here: {}", element.tag, element.attribute("type"), known));
+        throw InputError(element.place, fmt::format("unknown {} \"{}\"; known here: {}", element.tag,
+                                                    element.attribute("type"), known));
     }
 
     void note(const std::string& sentence) {
@@ -64,7 +67,8 @@ private:
         if (!id.empty() && element.tag != "ref") {
             const auto [earlier, is_new] = by_id_.emplace(id, &element);
             if (!is_new)
-                throw InputError(element.place, fmt::format("id \"{}\" stands already at {}", id, earlier->second->place));
+                throw InputError(element.place,
+                                 fmt::format("id \"{}\" stands already at {}", id, earlier->second->place));
         }
         for (const XmlElement& child : element.children) collect_ids(child);
     }
@@ -74,7 +78,8 @@ private:
         if (element.tag != "ref") return element;
         const std::string& id = element.require("id");
         const auto found = by_id_.find(id);
-        if (found == by_id_.end()) throw InputError(element.place, fmt::format("nothing in this scene has the id \"{}\"", id));
+        if (found == by_id_.end())
+            throw InputError(element.place, fmt::format("nothing in this scene has the id \"{}\"", id));
         return *found->second;
     }
 
@@ -96,21 +101,25 @@ private:
         Properties properties(element);
         if (type == "diffuse") {
             for (const XmlElement* object : properties.objects())
-                throw InputError(object->place, fmt::format("diffuse: expected reflectance as a colour, got <{}>", object->tag));
+                throw InputError(object->place,
+                                 fmt::format("diffuse: expected reflectance as a colour, got <{}>", object->tag));
             const ColorD reflectance = properties.reflectance("reflectance").value_or(ColorD(0.5));
             properties.require_all_known();
             if (std::min({reflectance.x, reflectance.y, reflectance.z}) < 0.0 || max_channel(Color(reflectance)) > 1.0f)
-                throw InputError(properties.place_of("reflectance"), fmt::format("reflectance: expected values in [0, 1], got {} {} {}",
-                                                                                 reflectance.x, reflectance.y, reflectance.z));
+                throw InputError(properties.place_of("reflectance"),
+                                 fmt::format("reflectance: expected values in [0, 1], got {} {} {}", reflectance.x,
+                                             reflectance.y, reflectance.z));
             return {.id = {}, .bsdf = Diffuse{Color(reflectance)}, .two_sided = false};
         }
         if (type == "twosided") {
             properties.require_all_known();
             if (properties.objects().size() != 1)
-                throw InputError(element.place, fmt::format("twosided: expected one nested bsdf, got {}", properties.objects().size()));
+                throw InputError(element.place, fmt::format("twosided: expected one nested bsdf, got {}",
+                                                            properties.objects().size()));
             const XmlElement& inner = resolve(*properties.objects().front());
             if (inner.tag != "bsdf" || inner.attribute("type") == "twosided")
-                throw InputError(inner.place, fmt::format("twosided: expected a one-sided bsdf, got {} \"{}\"", inner.tag, inner.attribute("type")));
+                throw InputError(inner.place, fmt::format("twosided: expected a one-sided bsdf, got {} \"{}\"",
+                                                          inner.tag, inner.attribute("type")));
             Material material = read_material(inner);
             material.two_sided = true;
             return material;
@@ -138,9 +147,10 @@ private:
         else if (type == "sphere")
             shape.geometry = read_sphere(element, properties, to_world, flip_normals);
         else if (type == "disk")
-            shape.geometry = DiskDescription{.centre = transform_point(to_world, VectorD(0.0)),
-                                             .normal = transform_normal(to_world, {0.0, 0.0, flip_normals ? -1.0 : 1.0}),
-                                             .radius = uniform_scale(to_world, 2, element.place)};
+            shape.geometry =
+                DiskDescription{.centre = transform_point(to_world, VectorD(0.0)),
+                                .normal = transform_normal(to_world, {0.0, 0.0, flip_normals ? -1.0 : 1.0}),
+                                .radius = uniform_scale(to_world, 2, element.place)};
         else
             fail_unknown(element, "cube, disk, obj, rectangle, sphere");
         properties.require_all_known();
@@ -155,7 +165,8 @@ private:
                 if (shape.radiance) throw InputError(object->place, "expected one emitter in a shape, got a second");
                 shape.radiance = read_area_light(plugin);
             } else {
-                throw InputError(object->place, fmt::format("unexpected <{}> in a shape; known here: bsdf, emitter", plugin.tag));
+                throw InputError(object->place,
+                                 fmt::format("unexpected <{}> in a shape; known here: bsdf, emitter", plugin.tag));
             }
         }
         shape.material = bsdf ? material_index(*bsdf) : default_material();
@@ -184,10 +195,13 @@ private:
         return mesh;
     }
 
-    static SphereDescription read_sphere(const XmlElement& element, Properties& properties, const Matrix& to_world, bool flip_normals) {
+    static SphereDescription read_sphere(const XmlElement& element, Properties& properties, const Matrix& to_world,
+                                         bool flip_normals) {
         const VectorD centre = properties.vector("center").value_or(VectorD(0.0));
         const double radius = properties.number("radius").value_or(1.0);
-        if (!(radius > 0.0)) throw InputError(properties.place_of("radius"), fmt::format("radius: expected a number above 0, got {}", radius));
+        if (!(radius > 0.0))
+            throw InputError(properties.place_of("radius"),
+                             fmt::format("radius: expected a number above 0, got {}", radius));
         return {.centre = transform_point(to_world, centre),
                 .radius = radius * uniform_scale(to_world, 3, element.place),
                 .flip_normals = flip_normals};
@@ -216,7 +230,8 @@ private:
                     position[(axis + 2) % 3] = corner.y;
                     mesh.positions.push_back(position);
                 }
-                mesh.texture_coordinates.insert(mesh.texture_coordinates.end(), face.texture_coordinates.begin(), face.texture_coordinates.end());
+                mesh.texture_coordinates.insert(mesh.texture_coordinates.end(), face.texture_coordinates.begin(),
+                                                face.texture_coordinates.end());
                 for (const auto& triangle : face.triangles)
                     mesh.triangles.push_back({first + triangle.x, first + triangle.y, first + triangle.z});
             }
@@ -238,7 +253,8 @@ private:
     static ColorD read_light(Properties& properties, const std::string& name, const ColorD& missing) {
         const ColorD light = properties.emission(name).value_or(missing);
         if (std::min({light.x, light.y, light.z}) < 0.0)
-            throw InputError(properties.place_of(name), fmt::format("{}: expected values of at least 0, got {} {} {}", name, light.x, light.y, light.z));
+            throw InputError(properties.place_of(name), fmt::format("{}: expected values of at least 0, got {} {} {}",
+                                                                    name, light.x, light.y, light.z));
         return light;
     }
 
@@ -271,7 +287,8 @@ private:
         Properties properties(element);
         if (const auto max_depth = properties.integer("max_depth")) {
             if (*max_depth != -1 && (*max_depth < 1 || *max_depth > 1'000'000))
-                throw InputError(properties.place_of("max_depth"), fmt::format("max_depth: expected -1 or 1 to 1000000, got {}", *max_depth));
+                throw InputError(properties.place_of("max_depth"),
+                                 fmt::format("max_depth: expected -1 or 1 to 1000000, got {}", *max_depth));
             scene_.max_depth = static_cast<int>(*max_depth);
         }
         for (const XmlElement* nested : properties.objects())
@@ -282,7 +299,9 @@ private:
     /// Notes a plugin that tells another program how to render, and the properties that are not read.
     void note_unread(const XmlElement& element, const Properties& properties) {
         const std::vector<std::string> unread = properties.unknown();
-        if (!unread.empty()) note(fmt::format("{} \"{}\": not read: {}", element.tag, element.attribute("type"), fmt::join(unread, ", ")));
+        if (!unread.empty())
+            note(fmt::format("{} \"{}\": not read: {}", element.tag, element.attribute("type"),
+                             fmt::join(unread, ", ")));
     }
 
     void read_film(const XmlElement& element) {
@@ -291,7 +310,9 @@ private:
         Properties properties(element);
         const auto size = [&](const std::string& name, int missing) {
             const long value = properties.integer(name).value_or(missing);
-            if (value < 1 || value > 16384) throw InputError(properties.place_of(name), fmt::format("{}: expected 1 to 16384 pixels, got {}", name, value));
+            if (value < 1 || value > 16384)
+                throw InputError(properties.place_of(name),
+                                 fmt::format("{}: expected 1 to 16384 pixels, got {}", name, value));
             return static_cast<int>(value);
         };
         scene_.camera.width = size("width", 768);
@@ -303,15 +324,18 @@ private:
         for (const auto& [name, whole] : whole_film) {
             const long value = properties.integer(name).value_or(whole);
             if (value != whole)
-                throw InputError(properties.place_of(name),
-                                 fmt::format("{}: expected {}, cropped films are not known here, got {}", name, whole, value));
+                throw InputError(
+                    properties.place_of(name),
+                    fmt::format("{}: expected {}, cropped films are not known here, got {}", name, whole, value));
         }
         for (const XmlElement* object : properties.objects())
-            note(fmt::format("{} \"{}\": not read; every pixel is the mean of its samples", object->tag, object->attribute("type")));
+            note(fmt::format("{} \"{}\": not read; every pixel is the mean of its samples", object->tag,
+                             object->attribute("type")));
         note_unread(element, properties);
     }
 
-    /// Horizontal field of view in degrees, from an angle about any of Mitsuba's axes or from a focal length on 35 mm film.
+    /// Horizontal field of view in degrees, from an angle about any of Mitsuba's axes or from a focal length on 35 mm
+    /// film.
     static double read_fov_x(const XmlElement& element, Properties& properties, double aspect) {
         const auto fov = properties.number("fov");
         const auto focal_length = properties.text("focal_length");
@@ -328,13 +352,16 @@ private:
             axis = "diagonal";
         }
         if (!(degrees > 0.0 && degrees < 180.0))
-            throw InputError(properties.place_of("fov"), fmt::format("fov: expected degrees in (0, 180), got {}", degrees));
+            throw InputError(properties.place_of("fov"),
+                             fmt::format("fov: expected degrees in (0, 180), got {}", degrees));
         const bool is_wide = aspect > 1.0;
         const double tangent = std::tan(degrees * pi / 360.0);
         if (axis == "x" || axis == (is_wide ? "larger" : "smaller")) return degrees;
-        if (axis == "y" || axis == (is_wide ? "smaller" : "larger")) return 2.0 * std::atan(tangent * aspect) * 180.0 / pi;
+        if (axis == "y" || axis == (is_wide ? "smaller" : "larger"))
+            return 2.0 * std::atan(tangent * aspect) * 180.0 / pi;
         if (axis == "diagonal") return 2.0 * std::atan(tangent * aspect / std::hypot(1.0, aspect)) * 180.0 / pi;
-        throw InputError(properties.place_of("fov_axis"), fmt::format("unknown fov_axis \"{}\"; known here: diagonal, larger, smaller, x, y", axis));
+        throw InputError(properties.place_of("fov_axis"),
+                         fmt::format("unknown fov_axis \"{}\"; known here: diagonal, larger, smaller, x, y", axis));
     }
 
     void read_sensor(const XmlElement& element) {
@@ -346,14 +373,18 @@ private:
             if (plugin.tag == "film")
                 read_film(plugin);
             else if (plugin.tag == "sampler")
-                note(fmt::format("sampler \"{}\": not read; sample positions are a fixed grid", plugin.attribute("type")));
+                note(fmt::format("sampler \"{}\": not read; sample positions are a fixed grid",
+                                 plugin.attribute("type")));
             else
-                throw InputError(object->place, fmt::format("unexpected <{}> in a sensor; known here: film, sampler", plugin.tag));
+                throw InputError(object->place,
+                                 fmt::format("unexpected <{}> in a sensor; known here: film, sampler", plugin.tag));
         }
-        scene_.camera.fov_x = read_fov_x(element, properties, static_cast<double>(scene_.camera.width) / scene_.camera.height);
+        scene_.camera.fov_x =
+            read_fov_x(element, properties, static_cast<double>(scene_.camera.width) / scene_.camera.height);
         for (const char* name : {"principal_point_offset_x", "principal_point_offset_y"})
             if (properties.number(name).value_or(0.0) != 0.0)
-                throw InputError(properties.place_of(name), fmt::format("{}: expected 0, a shifted image plane is not known here", name));
+                throw InputError(properties.place_of(name),
+                                 fmt::format("{}: expected 0, a shifted image plane is not known here", name));
         for (const char* unused : {"near_clip", "far_clip", "focus_distance", "shutter_open", "shutter_close"})
             if (properties.number(unused)) note(fmt::format("sensor \"perspective\": not read: {}", unused));
         properties.require_all_known();
@@ -368,7 +399,8 @@ private:
 
 }  // namespace
 
-SceneDescription load_scene_file(const std::filesystem::path& file, const std::map<std::string, std::string>& parameters) {
+SceneDescription load_scene_file(const std::filesystem::path& file,
+                                 const std::map<std::string, std::string>& parameters) {
     SceneDescription scene;
     std::string bytes_read;
     const XmlElement root = read_scene_xml(file, parameters, bytes_read);

@@ -18,14 +18,14 @@ namespace photonlab {
 
 /// A direction drawn from a BSDF.
 struct BsdfSample {
-    Vector incoming;        ///< unit, local frame
-    Color weight;           ///< f |cos| / density: what the path's throughput is multiplied by
-    float density = 0.0f;   ///< per steradian; 0 for a specular direction, which no other technique finds
+    Vector incoming;       ///< unit, local frame
+    Color weight;          ///< f |cos| / density: what the path's throughput is multiplied by
+    float density = 0.0f;  ///< per steradian; 0 for a specular direction, which no other technique finds
 };
 
 /// Lambert's: f = reflectance / pi above the surface, nothing below.
 struct Diffuse {
-    Color reflectance = Color(0.5f);    ///< in [0, 1] a channel
+    Color reflectance = Color(0.5f);  ///< in [0, 1] a channel
 
     Color evaluate(const Vector& outgoing, const Vector& incoming) const;
     std::optional<BsdfSample> sample(const Vector& outgoing, const Imath::V2f& u) const;
@@ -35,9 +35,9 @@ struct Diffuse {
 using Bsdf = std::variant<Diffuse>;
 
 struct Material {
-    std::string id;             ///< its id in the scene file, or its plugin's name
+    std::string id;  ///< its id in the scene file, or its plugin's name
     Bsdf bsdf;
-    bool two_sided = false;     ///< false: black from behind, as Mitsuba's materials are
+    bool two_sided = false;  ///< false: black from behind, as Mitsuba's materials are
 };
 
 /// f(outgoing, incoming) without the cosine, 1/sr; 0 where either direction is below the surface.

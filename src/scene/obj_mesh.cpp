@@ -1,6 +1,6 @@
-// Wavefront OBJ through tinyobjloader, in double. Its parser takes what is not a number for 0, a face's corner "2junk" or
-// "2.5" for 2, and drops polygons whose corners do not exist. So every line that matters is checked here first, which is
-// also how a message knows its line.
+// Wavefront OBJ through tinyobjloader, in double. Its parser takes what is not a number for 0, a face's corner "2junk"
+// or "2.5" for 2, and drops polygons whose corners do not exist. So every line that matters is checked here first,
+// which is also how a message knows its line.
 
 #include <fmt/format.h>
 
@@ -23,7 +23,7 @@ namespace photonlab {
 
 namespace {
 
-constexpr std::size_t corner_limit = 255;    // of one face: tinyobjloader 2.0.0rc10 counts them in a byte
+constexpr std::size_t corner_limit = 255;  // of one face: tinyobjloader 2.0.0rc10 counts them in a byte
 
 /// Calls `use(line number, words)` for each line of vertex data or faces, and blanks the comments in them, which the
 /// parser would take for more corners. Lines end as they do for the parser: at \n, \r or both.
@@ -39,7 +39,8 @@ void for_each_data_line(std::string& text, const Use& use) {
             words.clear();
             constexpr std::string_view blanks = " \t\v\f";
             const std::string_view line = std::string_view(text).substr(begin, stop - begin);
-            for (std::size_t i = line.find_first_not_of(blanks); i < line.size(); i = line.find_first_not_of(blanks, i)) {
+            for (std::size_t i = line.find_first_not_of(blanks); i < line.size();
+                 i = line.find_first_not_of(blanks, i)) {
                 const std::size_t word_end = std::min(line.find_first_of(blanks, i), line.size());
                 words.push_back(line.substr(i, word_end - i));
                 i = word_end;
@@ -48,7 +49,8 @@ void for_each_data_line(std::string& text, const Use& use) {
         split(end);
         if (!words.empty() && (words[0] == "v" || words[0] == "vn" || words[0] == "vt" || words[0] == "f")) {
             const std::size_t comment = std::min(text.find('#', begin), end);
-            std::fill(text.begin() + static_cast<std::ptrdiff_t>(comment), text.begin() + static_cast<std::ptrdiff_t>(end), ' ');
+            std::fill(text.begin() + static_cast<std::ptrdiff_t>(comment),
+                      text.begin() + static_cast<std::ptrdiff_t>(end), ' ');
             split(comment);
             use(number, words);
         }
@@ -69,9 +71,10 @@ void require_numbers(const std::vector<std::string_view>& words, const std::stri
     if (words[0] == "vn" && all_zero) throw InputError(place, "vn: expected a direction, got 0 0 0");
 }
 
-/// Refuses a face whose corners are not vertex, vertex/texture, vertex//normal or vertex/texture/normal, or do not exist:
-/// counted from 1 in the whole file (`total`), or backwards by negative numbers from this line (`before`).
-void require_face(const std::vector<std::string_view>& words, const Counts& before, const Counts& total, const std::string& place) {
+/// Refuses a face whose corners are not vertex, vertex/texture, vertex//normal or vertex/texture/normal, or do not
+/// exist: counted from 1 in the whole file (`total`), or backwards by negative numbers from this line (`before`).
+void require_face(const std::vector<std::string_view>& words, const Counts& before, const Counts& total,
+                  const std::string& place) {
     static constexpr std::string_view names[] = {"vertex", "texture coordinate", "normal"};
     const std::size_t corners = words.size() - 1;
     if (corners < 3 || corners > corner_limit)
@@ -83,13 +86,14 @@ void require_face(const std::vector<std::string_view>& words, const Counts& befo
             const std::string_view field = rest.substr(0, slash);
             const bool may_be_empty = kind == 1 && slash != rest.npos;
             if (kind > 2 || (field.empty() && !may_be_empty))
-                throw InputError(place, fmt::format("f: expected a corner as 1, 1/2, 1//3 or 1/2/3, got \"{}\"", words[i]));
+                throw InputError(place,
+                                 fmt::format("f: expected a corner as 1, 1/2, 1//3 or 1/2/3, got \"{}\"", words[i]));
             if (!field.empty()) {
                 const long index = parse_integer(field, place);
                 const std::size_t count = index < 0 ? before[kind] : total[kind];
                 if (index == 0 || static_cast<std::size_t>(std::abs(index)) > count)
-                    throw InputError(place, fmt::format("a face names {} {}, but there are {}{}", names[kind], index, count,
-                                                        index < 0 ? " before it" : ""));
+                    throw InputError(place, fmt::format("a face names {} {}, but there are {}{}", names[kind], index,
+                                                        count, index < 0 ? " before it" : ""));
             }
             if (slash == rest.npos) break;
             rest.remove_prefix(slash + 1);
@@ -139,7 +143,7 @@ MeshDescription load_obj_mesh(const std::filesystem::path& file, bool face_norma
     std::string text = read_whole_file(file, file.string());
     require_well_formed(text, file);
     tinyobj::ObjReaderConfig config;
-    config.triangulate = false;    // its cuts differ between versions and from Mitsuba's
+    config.triangulate = false;  // its cuts differ between versions and from Mitsuba's
     config.vertex_color = false;
     tinyobj::ObjReader reader;
     if (!reader.ParseFromString(text, "", config))
@@ -159,7 +163,8 @@ MeshDescription load_obj_mesh(const std::filesystem::path& file, bool face_norma
     const auto vertex_of = [&](const tinyobj::index_t& index) {
         const auto require_below = [&](int i, std::size_t count, std::string_view what) {
             if (i < 0 || static_cast<std::size_t>(i) >= count)
-                throw InputError(file.string(), fmt::format("a face names {} {}, but there are {}", what, i + 1, count));
+                throw InputError(file.string(),
+                                 fmt::format("a face names {} {}, but there are {}", what, i + 1, count));
         };
         require_below(index.vertex_index, data.vertices.size() / 3, "vertex");
         if (all_have_normals) require_below(index.normal_index, data.normals.size() / 3, "normal");

@@ -11,11 +11,11 @@ namespace photonlab {
 
 namespace {
 
-const std::set<std::string> value_tags{"float",    "integer", "boolean", "string", "rgb", "srgb",
-                                       "spectrum", "point",   "vector",  "transform"};
+const std::set<std::string> value_tags{"float", "integer",  "boolean", "string", "rgb",
+                                       "srgb",  "spectrum", "point",   "vector", "transform"};
 const std::set<std::string> color_tags{"float", "rgb", "spectrum", "srgb"};
-const std::set<std::string> object_tags{"bsdf",   "emitter", "film",    "integrator", "medium", "phase", "ref",
-                                        "rfilter", "sampler", "sensor", "shape",      "texture"};
+const std::set<std::string> object_tags{"bsdf", "emitter", "film",    "integrator", "medium", "phase",
+                                        "ref",  "rfilter", "sampler", "sensor",     "shape",  "texture"};
 
 double srgb_to_linear(double value) {
     return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
@@ -121,7 +121,8 @@ std::optional<ColorD> Properties::emission(const std::string& name) {
     if (is_by_wavelength(*element)) {
         const Spectrum spectrum = parse_spectrum(element->require("value"), element->place);
         for (const double value : spectrum.values)
-            if (value < 0.0) throw InputError(element->place, fmt::format("{}: expected values of at least 0, got {}", name, value));
+            if (value < 0.0)
+                throw InputError(element->place, fmt::format("{}: expected values of at least 0, got {}", name, value));
         return emission_to_rgb(spectrum);
     }
     if (is_uniform_spectrum(*element)) return equal_energy_white() * parse_rgb(*element);
@@ -143,8 +144,9 @@ std::optional<Matrix> Properties::transform(const std::string& name) {
 void Properties::require_all_known() const {
     for (const auto& [name, element] : properties_)
         if (!asked_.count(name))
-            throw InputError(element->place, fmt::format("unknown property \"{}\" of {} \"{}\"; known here: {}", name,
-                                                         plugin_.tag, plugin_.attribute("type"), fmt::join(asked_, ", ")));
+            throw InputError(element->place,
+                             fmt::format("unknown property \"{}\" of {} \"{}\"; known here: {}", name, plugin_.tag,
+                                         plugin_.attribute("type"), fmt::join(asked_, ", ")));
 }
 
 std::vector<std::string> Properties::unknown() const {

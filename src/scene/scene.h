@@ -23,19 +23,19 @@ inline constexpr std::uint32_t no_emitter = ~0u;
 
 struct TriangleMesh {
     std::vector<Vector> positions;
-    std::vector<Vector> normals;                    ///< shading normals, one a vertex, or empty
-    std::vector<Imath::V2f> texture_coordinates;    ///< one a vertex, or empty
+    std::vector<Vector> normals;                  ///< shading normals, one a vertex, or empty
+    std::vector<Imath::V2f> texture_coordinates;  ///< one a vertex, or empty
     std::vector<Imath::Vec3<std::uint32_t>> triangles;
 };
 
 struct Sphere {
     Vector centre;
     float radius;
-    float orientation;    ///< +1: the normal points outwards; -1: to the centre
+    float orientation;  ///< +1: the normal points outwards; -1: to the centre
 };
 
 struct Disk {
-    Frame frame;          ///< its normal is the disk's
+    Frame frame;  ///< its normal is the disk's
     Vector centre;
     float radius;
 };
@@ -43,9 +43,9 @@ struct Disk {
 struct Shape {
     std::variant<TriangleMesh, Sphere, Disk> geometry;
     std::uint32_t material;
-    std::uint32_t emitter = no_emitter;    ///< index into Scene::emitters
-    double area;                           ///< surface area
-    std::vector<double> triangle_cdf;      ///< meshes that emit: running share of the area, last is 1
+    std::uint32_t emitter = no_emitter;  ///< index into Scene::emitters
+    double area;                         ///< surface area
+    std::vector<double> triangle_cdf;    ///< meshes that emit: running share of the area, last is 1
 };
 
 /// Emits `radiance` from every point of its shape, to the side of the normal.
@@ -55,65 +55,65 @@ struct AreaLight {
 };
 
 struct PointLight {
-    ColorD intensity;    ///< power per steradian, in this file's unit of power
+    ColorD intensity;  ///< power per steradian, in this file's unit of power
     Vector position;
 };
 
 struct Emitter {
     std::variant<AreaLight, PointLight> kind;
-    ColorD power;                          ///< of the whole emitter
-    double choice_probability;             ///< with which lights are chosen by power: mean_channel(power) / total
-    double choice_cdf;                     ///< running sum of choice_probability, the last emitter's is 1
+    ColorD power;               ///< of the whole emitter
+    double choice_probability;  ///< with which lights are chosen by power: mean_channel(power) / total
+    double choice_cdf;          ///< running sum of choice_probability, the last emitter's is 1
 };
 
 /// Pinhole camera: the ray through (x, y) in pixels, y down, leaves `position` in direction
 /// forward + right * (x/width - 1/2) + down * (y/height - 1/2), to be normalised.
 struct Camera {
     Vector position;
-    VectorD forward;           ///< unit length
-    VectorD right;             ///< as long as the image plane at distance 1 is wide
-    VectorD down;              ///< as long as the image plane at distance 1 is high
+    VectorD forward;  ///< unit length
+    VectorD right;    ///< as long as the image plane at distance 1 is wide
+    VectorD down;     ///< as long as the image plane at distance 1 is high
     int width;
     int height;
-    double pixel_angle;        ///< angle that a central pixel is wide, radians; of small angles: its width at distance 1
+    double pixel_angle;  ///< angle that a central pixel is wide, radians; of small angles: its width at distance 1
 
-    Vector direction(double x, double y) const;    ///< unit
+    Vector direction(double x, double y) const;  ///< unit
 };
 
 struct Ray {
     Vector origin;
-    Vector direction;    ///< unit
+    Vector direction;  ///< unit
 };
 
 /// Where a ray meets a surface.
 struct Hit {
     Vector position;
-    Vector geometric_normal;    ///< unit, to the shape's outside, whichever side was hit
-    Vector shading_normal;      ///< unit, interpolated; on the same side as the geometric normal
+    Vector geometric_normal;  ///< unit, to the shape's outside, whichever side was hit
+    Vector shading_normal;    ///< unit, interpolated; on the same side as the geometric normal
     Imath::V2f texture_coordinate = Imath::V2f(0.0f);
     float distance;
     std::uint32_t shape;
-    std::uint32_t primitive;    ///< triangle of a mesh, else 0
+    std::uint32_t primitive;  ///< triangle of a mesh, else 0
 };
 
-struct EmbreeScene;    // owns the device and the scene of Embree
+struct EmbreeScene;  // owns the device and the scene of Embree
 struct EmbreeSceneDeleter {
     void operator()(EmbreeScene* embree) const;
 };
 
 struct Scene {
     std::string name;
-    std::string hash;                  ///< of the scene file and all it reads, hexadecimal
+    std::string hash;  ///< of the scene file and all it reads, hexadecimal
     std::vector<std::string> notes;
-    double unit_length = 1.0;          ///< scene units in one unit of the box
-    VectorD centre;                    ///< of the box, in scene units
+    double unit_length = 1.0;  ///< scene units in one unit of the box
+    VectorD centre;            ///< of the box, in scene units
     std::vector<Material> materials;
     std::vector<Shape> shapes;
-    std::vector<Emitter> emitters;     ///< only those with power above 0
-    double total_power = 0.0;          ///< sum of mean_channel(power) over emitters
+    std::vector<Emitter> emitters;  ///< only those with power above 0
+    double total_power = 0.0;       ///< sum of mean_channel(power) over emitters
     Camera camera;
     int max_depth = -1;
-    float bounding_radius = 0.0f;      ///< of the surfaces' bounding box: half its diagonal; 0 without surfaces
+    float bounding_radius = 0.0f;  ///< of the surfaces' bounding box: half its diagonal; 0 without surfaces
     std::unique_ptr<EmbreeScene, EmbreeSceneDeleter> embree;
 };
 
@@ -137,8 +137,8 @@ bool is_occluded(const Scene& scene, const Vector& from, const Vector& to);
 /// A surface point turned to the side that a direction came from, ready to be shaded.
 struct Surface {
     const Material* material;
-    Frame frame;                ///< around the shading normal, which faces `outgoing`
-    Vector geometric_normal;    ///< unit, facing `outgoing` too
+    Frame frame;              ///< around the shading normal, which faces `outgoing`
+    Vector geometric_normal;  ///< unit, facing `outgoing` too
     Vector position;
 };
 

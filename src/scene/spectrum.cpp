@@ -22,6 +22,7 @@ constexpr double last_wavelength = 830.0;
 constexpr double table_step = 5.0;
 
 /// CIE 1931 2-degree observer and CIE standard illuminant D65 (CIE 15:2004, tables T.4 and T.1), every 5 nm.
+// clang-format off
 constexpr std::array<ObserverRow, 95> table{{
     {0.0001299, 0.000003917, 0.0006061, 46.6383}, {0.0002321, 0.000006965, 0.001086, 49.3637},
     {0.0004149, 0.00001239, 0.001946, 52.0891}, {0.0007416, 0.00002202, 0.003486, 51.0323},
@@ -60,6 +61,7 @@ constexpr std::array<ObserverRow, 95> table{{
     {0.000005085868, 0.0000018366, 0.0, 51.959}, {0.000003581652, 0.0000012934, 0.0, 54.6998},
     {0.000002522525, 0.00000091093, 0.0, 57.4406}, {0.000001776509, 0.00000064153, 0.0, 58.8766},
     {0.000001251141, 0.00000045181, 0.0, 60.3125}}};
+// clang-format on
 
 ObserverRow observer(double wavelength) {
     const double at = (wavelength - first_wavelength) / table_step;
@@ -81,8 +83,7 @@ double value_at(const Spectrum& spectrum, double wavelength) {
 
 /// CIE XYZ to linear sRGB (IEC 61966-2-1).
 ColorD xyz_to_rgb(double x, double y, double z) {
-    return {3.240479 * x - 1.537150 * y - 0.498535 * z,
-            -0.969256 * x + 1.875991 * y + 0.041556 * z,
+    return {3.240479 * x - 1.537150 * y - 0.498535 * z, -0.969256 * x + 1.875991 * y + 0.041556 * z,
             0.055648 * x - 0.204043 * y + 1.057311 * z};
 }
 
@@ -111,11 +112,13 @@ Spectrum parse_spectrum(const std::string& text, const std::string& place) {
     const std::vector<double> numbers = parse_numbers(spaced, place);
     const auto pairs = static_cast<std::size_t>(std::count(text.begin(), text.end(), ':'));
     if (pairs < 2 || numbers.size() != 2 * pairs)
-        throw InputError(place, fmt::format("expected a spectrum as at least two pairs wavelength:value, got \"{}\"", text));
+        throw InputError(place,
+                         fmt::format("expected a spectrum as at least two pairs wavelength:value, got \"{}\"", text));
     Spectrum spectrum;
     for (std::size_t i = 0; i < pairs; ++i) {
         if (i > 0 && numbers[2 * i] <= numbers[2 * i - 2])
-            throw InputError(place, fmt::format("expected rising wavelengths, got {} after {}", numbers[2 * i], numbers[2 * i - 2]));
+            throw InputError(
+                place, fmt::format("expected rising wavelengths, got {} after {}", numbers[2 * i], numbers[2 * i - 2]));
         spectrum.wavelengths.push_back(numbers[2 * i]);
         spectrum.values.push_back(numbers[2 * i + 1]);
     }
@@ -131,6 +134,8 @@ ColorD emission_to_rgb(const Spectrum& spectrum) {
     return to_rgb(spectrum, [](const ObserverRow&) { return 1.0; });
 }
 
-ColorD equal_energy_white() { return xyz_to_rgb(1.0, 1.0, 1.0); }
+ColorD equal_energy_white() {
+    return xyz_to_rgb(1.0, 1.0, 1.0);
+}
 
 }  // namespace photonlab

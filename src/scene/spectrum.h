@@ -19,8 +19,8 @@ struct Spectrum {
 /// "400:0.1, 500:0.3": pairs of wavelength and value. Throws InputError at `place`.
 Spectrum parse_spectrum(const std::string& text, const std::string& place);
 
-/// What the surface reflects of D65: a reflectance of 1 everywhere is (1, 1, 1). Colours outside sRGB's gamut are clamped
-/// to [0, 1].
+/// What the surface reflects of D65: a reflectance of 1 everywhere is (1, 1, 1). Colours outside sRGB's gamut are
+/// clamped to [0, 1].
 ColorD reflectance_to_rgb(const Spectrum& spectrum);
 
 /// What the light emits, in the spectrum's unit: of Y = 1 for a value of 1 everywhere, which is equal-energy white and

@@ -22,7 +22,8 @@ Matrix parse_matrix(const XmlElement& element) {
     const int size = n.size() == 16 ? 4 : 3;
     Matrix result;
     for (int row = 0; row < size; ++row)
-        for (int column = 0; column < size; ++column) result[column][row] = n[static_cast<std::size_t>(row * size + column)];
+        for (int column = 0; column < size; ++column)
+            result[column][row] = n[static_cast<std::size_t>(row * size + column)];
     if (result[0][3] != 0.0 || result[1][3] != 0.0 || result[2][3] != 0.0 || result[3][3] != 1.0)
         throw InputError(element.place, "expected an affine matrix: the last row must be 0 0 0 1");
     return result;
@@ -37,7 +38,8 @@ Matrix parse_look_at(const XmlElement& element) {
     const VectorD forward = (target - origin).normalized();
     const VectorD left = up.cross(forward).normalized();
     if (forward.length2() == 0.0 || left.length2() == 0.0)
-        throw InputError(element.place, "lookat: expected a target away from the origin, and an up that is not the view direction");
+        throw InputError(element.place,
+                         "lookat: expected a target away from the origin, and an up that is not the view direction");
     const VectorD new_up = forward.cross(left);
     Matrix result;
     for (int axis = 0; axis < 3; ++axis) {
@@ -68,8 +70,9 @@ Matrix parse_element(const XmlElement& element) {
     } else if (element.tag == "scale") {
         result.setScale(parse_vector(element, 1.0));
     } else {
-        throw InputError(element.place, fmt::format("unknown transform <{}>; known here: lookat, matrix, rotate, scale, translate",
-                                                    element.tag));
+        throw InputError(
+            element.place,
+            fmt::format("unknown transform <{}>; known here: lookat, matrix, rotate, scale, translate", element.tag));
     }
     return result;
 }
@@ -85,7 +88,8 @@ VectorD parse_vector(const XmlElement& element, double missing) {
         const std::string& text = element.require("value");
         const std::vector<double> numbers = parse_numbers(text, element.place);
         if (numbers.size() == 1) return VectorD(numbers[0]);
-        if (numbers.size() != 3) throw InputError(element.place, fmt::format("expected 1 or 3 numbers, got \"{}\"", text));
+        if (numbers.size() != 3)
+            throw InputError(element.place, fmt::format("expected 1 or 3 numbers, got \"{}\"", text));
         return {numbers[0], numbers[1], numbers[2]};
     }
     VectorD result(missing);
@@ -96,7 +100,8 @@ VectorD parse_vector(const XmlElement& element, double missing) {
         result[axis] = parse_number(text, element.place);
         any = true;
     }
-    if (!any) throw InputError(element.place, fmt::format("<{}> needs x, y, z or a value of 1 or 3 numbers", element.tag));
+    if (!any)
+        throw InputError(element.place, fmt::format("<{}> needs x, y, z or a value of 1 or 3 numbers", element.tag));
     return result;
 }
 
@@ -108,7 +113,9 @@ Matrix parse_transform(const XmlElement& element) {
     return result;
 }
 
-VectorD transform_point(const Matrix& matrix, const VectorD& point) { return point * matrix; }
+VectorD transform_point(const Matrix& matrix, const VectorD& point) {
+    return point * matrix;
+}
 
 VectorD transform_direction(const Matrix& matrix, const VectorD& direction) {
     VectorD result;
@@ -135,7 +142,8 @@ double uniform_scale(const Matrix& m, int axis_count, const std::string& place) 
     for (int i = 0; i < axis_count; ++i) {
         const bool same_length = std::abs(axes[i].length() - scale) <= 1e-6 * scale;
         bool perpendicular = true;
-        for (int j = 0; j < i; ++j) perpendicular = perpendicular && std::abs(axes[i].dot(axes[j])) <= 1e-6 * scale * scale;
+        for (int j = 0; j < i; ++j)
+            perpendicular = perpendicular && std::abs(axes[i].dot(axes[j])) <= 1e-6 * scale * scale;
         if (!same_length || !perpendicular)
             throw InputError(place, "expected a to_world that scales all directions alike: this shape must stay round");
     }

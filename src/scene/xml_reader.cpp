@@ -18,10 +18,10 @@ namespace photonlab {
 
 namespace {
 
-constexpr int include_limit = 15;                  // nested files, as in Mitsuba
-constexpr int nesting_limit = 100;                 // elements inside elements of one file
-constexpr std::size_t element_limit = 1'000'000;   // in all files together
-constexpr std::size_t value_limit = 65'536;         // characters of a value once $names are put in
+constexpr int include_limit = 15;                 // nested files, as in Mitsuba
+constexpr int nesting_limit = 100;                // elements inside elements of one file
+constexpr std::size_t element_limit = 1'000'000;  // in all files together
+constexpr std::size_t value_limit = 65'536;       // characters of a value once $names are put in
 constexpr std::uintmax_t size_limit = std::uintmax_t{2} << 30;
 
 /// Offsets at which lines start, to turn pugixml's byte offsets into line numbers.
@@ -32,7 +32,8 @@ public:
             if (text[i] == '\n') ends_.push_back(i);
     }
     std::size_t at(std::ptrdiff_t offset) const {
-        const auto found = std::lower_bound(ends_.begin(), ends_.end(), static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, offset)));
+        const auto found =
+            std::lower_bound(ends_.begin(), ends_.end(), static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, offset)));
         return static_cast<std::size_t>(found - ends_.begin()) + 1;
     }
 
@@ -69,9 +70,12 @@ const std::set<std::string>* known_attributes(const std::string& tag) {
     static const std::set<std::string> vector{"name", "value", "x", "y", "z"};
     static const std::set<std::string> step{"value", "x", "y", "z"};
     static const std::set<std::string> look_at{"origin", "target", "up"};
-    static const std::map<std::string, std::set<std::string>> others{
-        {"scene", {"id", "name", "version"}}, {"transform", {"name"}}, {"include", {"filename"}},
-        {"ref", {"id", "name"}},              {"matrix", {"value"}},   {"rotate", {"angle", "value", "x", "y", "z"}}};
+    static const std::map<std::string, std::set<std::string>> others{{"scene", {"id", "name", "version"}},
+                                                                     {"transform", {"name"}},
+                                                                     {"include", {"filename"}},
+                                                                     {"ref", {"id", "name"}},
+                                                                     {"matrix", {"value"}},
+                                                                     {"rotate", {"angle", "value", "x", "y", "z"}}};
     for (const char* name : {"bsdf", "emitter", "film", "integrator", "medium", "phase", "rfilter", "sampler", "sensor",
                              "shape", "texture"})
         if (tag == name) return &plugin;
@@ -102,7 +106,9 @@ void require_structure(const XmlElement& element, const pugi::xml_node& node) {
             throw InputError(element.place, fmt::format("unexpected <{}> inside <{}>", child.name(), element.tag));
 }
 
-bool is_name_character(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+bool is_name_character(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+}
 
 class Reader {
 public:
@@ -121,7 +127,8 @@ public:
 
         const std::string text = read_whole_file(file, from);
         bytes_read_ += text;
-        if (bytes_read_.size() > size_limit) throw InputError(from, "expected a scene and its includes to be at most 2 GiB");
+        if (bytes_read_.size() > size_limit)
+            throw InputError(from, "expected a scene and its includes to be at most 2 GiB");
         const LineNumbers lines(text);
         pugi::xml_document document;
         const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size());
@@ -140,18 +147,21 @@ public:
     /// Parameters given from outside must be names of the file.
     void require_all_used(const std::filesystem::path& file) const {
         for (const auto& [name, value] : parameters_)
-            if (!used_.count(name)) throw InputError(file.string(), fmt::format("no parameter ${} in this scene", name));
+            if (!used_.count(name))
+                throw InputError(file.string(), fmt::format("no parameter ${} in this scene", name));
     }
 
 private:
-    XmlElement convert(const pugi::xml_node& node, const std::filesystem::path& file, const LineNumbers& lines, int depth) {
+    XmlElement convert(const pugi::xml_node& node, const std::filesystem::path& file, const LineNumbers& lines,
+                       int depth) {
         if (++elements_ > element_limit)
             throw InputError(file.string(), fmt::format("expected at most {} elements", element_limit));
         XmlElement element;
         element.tag = node.name();
         element.place = fmt::format("{}:{}", file.string(), lines.at(node.offset_debug()));
         if (depth > nesting_limit)
-            throw InputError(element.place, fmt::format("expected at most {} elements inside each other", nesting_limit));
+            throw InputError(element.place,
+                             fmt::format("expected at most {} elements inside each other", nesting_limit));
         element.scene_folder = scene_folder_;
         element.own_folder = file.parent_path();
         for (const pugi::xml_attribute& attribute : node.attributes()) {
@@ -164,7 +174,8 @@ private:
         require_structure(element, node);
         for (const pugi::xml_node& child : node.children()) {
             if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata)
-                throw InputError(element.place, fmt::format("unexpected text \"{}\" inside <{}>", child.value(), element.tag));
+                throw InputError(element.place,
+                                 fmt::format("unexpected text \"{}\" inside <{}>", child.value(), element.tag));
             if (child.type() != pugi::node_element) continue;
             XmlElement converted = convert(child, file, lines, depth + 1);
             if (converted.tag == "default") {
@@ -195,10 +206,12 @@ private:
             const std::string name(text.substr(i + 1, end - i - 1));
             std::size_t length = name.size();
             while (length > 0 && !lookup(name.substr(0, length))) --length;
-            if (length == 0) throw InputError(place, fmt::format("${} has no <default> before it and no value was given", name));
+            if (length == 0)
+                throw InputError(place, fmt::format("${} has no <default> before it and no value was given", name));
             result += *lookup(name.substr(0, length));
             if (result.size() > value_limit)
-                throw InputError(place, fmt::format("expected at most {} characters once $names are put in", value_limit));
+                throw InputError(place,
+                                 fmt::format("expected at most {} characters once $names are put in", value_limit));
             i += 1 + length;
         }
         return result;
@@ -216,7 +229,7 @@ private:
     const std::filesystem::path scene_folder_;
     const std::map<std::string, std::string>& parameters_;
     std::string& bytes_read_;
-    std::map<std::string, std::string> values_;    // of the <default>s read so far
+    std::map<std::string, std::string> values_;  // of the <default>s read so far
     std::set<std::string> used_;
     std::vector<std::filesystem::path> open_files_;
     std::size_t elements_ = 0;

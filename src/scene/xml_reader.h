@@ -1,5 +1,6 @@
 // The XML of a Mitsuba scene file without its meaning: includes followed, defaults and $names put in, both spellings of
-// names folded into one, and every element knowing the file and line where it stands. What elements mean is in loader.cpp.
+// names folded into one, and every element knowing the file and line where it stands. What elements mean is in
+// loader.cpp.
 
 #pragma once
 
@@ -12,12 +13,12 @@
 namespace photonlab {
 
 struct XmlElement {
-    std::string tag;                                  ///< as written: "shape", "rgb", ...
-    std::map<std::string, std::string> attributes;    ///< $names replaced; `name` in snake_case ("toWorld" is "to_world")
+    std::string tag;                                ///< as written: "shape", "rgb", ...
+    std::map<std::string, std::string> attributes;  ///< $names replaced; `name` in snake_case ("toWorld" is "to_world")
     std::vector<XmlElement> children;
-    std::string place;                                ///< "file:line"
-    std::filesystem::path scene_folder;               ///< of the scene file that was asked for
-    std::filesystem::path own_folder;                 ///< of the file it stands in: another one inside an include
+    std::string place;                   ///< "file:line"
+    std::filesystem::path scene_folder;  ///< of the scene file that was asked for
+    std::filesystem::path own_folder;    ///< of the file it stands in: another one inside an include
 
     /// The attribute's value, or "" when there is none.
     std::string attribute(std::string_view name) const;
@@ -25,7 +26,8 @@ struct XmlElement {
     /// The attribute's value; InputError when there is none.
     const std::string& require(std::string_view name) const;
 
-    /// The file that the element names: relative to the scene's folder, as in Mitsuba, or else to its own file's folder.
+    /// The file that the element names: relative to the scene's folder, as in Mitsuba, or else to its own file's
+    /// folder.
     std::filesystem::path file_called(const std::string& name) const;
 };
 

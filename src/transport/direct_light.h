@@ -13,10 +13,10 @@ namespace photonlab {
 
 /// One unoccluded connection of a surface to a light.
 struct ConnectedLight {
-    ColorD contribution;      ///< radiance reflected towards the viewer, divided by the density of the connection
-    double light_density;     ///< per steradian, with which this direction was drawn, the choice of light included;
-                              ///< 0 for a point light, which no other technique can find
-    double bsdf_density;      ///< per steradian, with which the material would have drawn it; 0 for a point light
+    ColorD contribution;   ///< radiance reflected towards the viewer, divided by the density of the connection
+    double light_density;  ///< per steradian, with which this direction was drawn, the choice of light included;
+                           ///< 0 for a point light, which no other technique can find
+    double bsdf_density;   ///< per steradian, with which the material would have drawn it; 0 for a point light
 };
 
 /// Connects `surface` to one point on one light; empty when no light comes from there. Always draws the same number of

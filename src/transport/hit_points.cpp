@@ -1,6 +1,5 @@
 #include "transport/hit_points.h"
 
-
 #include "core/error.h"
 #include "core/parallel.h"
 #include "scene/emitter.h"
@@ -9,7 +8,7 @@ namespace photonlab {
 
 namespace {
 
-constexpr int tile_size = 16;    // pixels; hit points of a tile stay together in the list
+constexpr int tile_size = 16;  // pixels; hit points of a tile stay together in the list
 
 struct Tile {
     std::vector<HitPoint> points;
@@ -29,7 +28,7 @@ int grid_size(int samples_per_pixel) {
 }  // namespace
 
 HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int threads) {
-    constexpr std::size_t material_limit = std::size_t{1} << 16;    // HitPoint::material
+    constexpr std::size_t material_limit = std::size_t{1} << 16;  // HitPoint::material
     if (scene.materials.size() > material_limit)
         throw InputError("expected at most " + std::to_string(material_limit) + " materials in a scene, got " +
                          std::to_string(scene.materials.size()));
@@ -43,14 +42,15 @@ HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int thread
     result.width = camera.width;
     result.height = camera.height;
     result.samples_per_pixel = samples_per_pixel;
-    result.emission.assign(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height), ColorD(0.0));
+    result.emission.assign(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height),
+                           ColorD(0.0));
 
     const auto trace_sample = [&](int pixel_x, int pixel_y, double x, double y, Tile& tile) {
         const Ray ray{camera.position, camera.direction(x, y)};
         const std::optional<Hit> hit = intersect(scene, ray);
         if (!hit) return;
-        const std::uint32_t pixel =
-            static_cast<std::uint32_t>(pixel_y) * static_cast<std::uint32_t>(camera.width) + static_cast<std::uint32_t>(pixel_x);
+        const std::uint32_t pixel = static_cast<std::uint32_t>(pixel_y) * static_cast<std::uint32_t>(camera.width) +
+                                    static_cast<std::uint32_t>(pixel_x);
         const Vector outgoing = -ray.direction;
         result.emission[pixel] += emitted_radiance(scene, *hit, outgoing) * static_cast<double>(share);
         const std::optional<Surface> surface = orient(scene, *hit, outgoing);
@@ -79,7 +79,8 @@ HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int thread
         for (int y = top; y < std::min(top + tile_size, camera.height); ++y)
             for (int x = left; x < std::min(left + tile_size, camera.width); ++x)
                 for (int sample = 0; sample < samples_per_pixel; ++sample)
-                    trace_sample(x, y, x + (sample % grid + 0.5) / grid, y + (sample / grid + 0.5) / grid, tiles[index]);
+                    trace_sample(x, y, x + (sample % grid + 0.5) / grid, y + (sample / grid + 0.5) / grid,
+                                 tiles[index]);
     });
 
     for (const Tile& tile : tiles) {

@@ -17,13 +17,13 @@ namespace photonlab {
 /// A point to gather at. Const once made; what changes from pass to pass is in GatherStatistics.
 struct HitPoint {
     Vector position;
-    Vector normal;                 ///< shading normal, unit, facing `outgoing`
-    Vector geometric_normal;       ///< unit, facing `outgoing`
-    Vector outgoing;               ///< unit, towards the camera's side of the path
-    Color weight;                  ///< path throughput from here to the pixel, times the sample's share of the pixel
-    std::uint32_t pixel;           ///< y * width + x
-    std::uint16_t material;        ///< index into Scene::materials
-    std::uint16_t camera_edges;    ///< edges of the path from the camera to here; 1 when seen directly
+    Vector normal;               ///< shading normal, unit, facing `outgoing`
+    Vector geometric_normal;     ///< unit, facing `outgoing`
+    Vector outgoing;             ///< unit, towards the camera's side of the path
+    Color weight;                ///< path throughput from here to the pixel, times the sample's share of the pixel
+    std::uint32_t pixel;         ///< y * width + x
+    std::uint16_t material;      ///< index into Scene::materials
+    std::uint16_t camera_edges;  ///< edges of the path from the camera to here; 1 when seen directly
 };
 
 /// The result of the camera pass.
@@ -31,10 +31,11 @@ struct HitPoints {
     int width = 0;
     int height = 0;
     int samples_per_pixel = 1;
-    std::vector<HitPoint> points;      ///< tile by tile, so that neighbours in the list are neighbours in space
-    std::vector<float> footprints;     ///< one a point, unit box: unfolded distance from the camera times the pixel's angle
-    std::vector<ColorD> emission;      ///< one a pixel: radiance that reaches the camera without a bounce at a hit point
-    std::uint64_t nonfinite = 0;       ///< camera paths that met a non-finite value
+    std::vector<HitPoint> points;  ///< tile by tile, so that neighbours in the list are neighbours in space
+    std::vector<float>
+        footprints;                ///< one a point, unit box: unfolded distance from the camera times the pixel's angle
+    std::vector<ColorD> emission;  ///< one a pixel: radiance that reaches the camera without a bounce at a hit point
+    std::uint64_t nonfinite = 0;   ///< camera paths that met a non-finite value
 };
 
 /// Traces the deterministic grid of sample positions: `samples_per_pixel` is a perfect square, 1 is the pixel's centre.

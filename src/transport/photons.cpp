@@ -8,9 +8,9 @@ namespace photonlab {
 
 namespace {
 
-constexpr std::size_t block_size = 1024;         // paths
-constexpr std::uint32_t edge_cap = 10'000;       // ends light that is trapped; what it cuts is counted
-constexpr float highest_survival = 0.99f;        // so that a path among white surfaces ends, too
+constexpr std::size_t block_size = 1024;    // paths
+constexpr std::uint32_t edge_cap = 10'000;  // ends light that is trapped; what it cuts is counted
+constexpr float highest_survival = 0.99f;   // so that a path among white surfaces ends, too
 
 /// Asymmetry of the BSDF's adjoint under shading normals, for a photon that arrives against `arriving` and leaves along
 /// `leaving`: |arriving.ns leaving.ng| / |arriving.ng leaving.ns|. 1 on a flat surface. [Veach 1996, section 5.3]
@@ -33,7 +33,8 @@ void trace_path(const Scene& scene, const PhotonSettings& settings, std::uint64_
     Ray ray = emission.ray;
     Color power = emission.weight;
     // The camera's side of a path has at least one edge, so a photon may have at most max_depth - 1.
-    const std::uint32_t edge_limit = settings.max_depth < 0 ? edge_cap : static_cast<std::uint32_t>(std::max(0, settings.max_depth - 1));
+    const std::uint32_t edge_limit =
+        settings.max_depth < 0 ? edge_cap : static_cast<std::uint32_t>(std::max(0, settings.max_depth - 1));
     for (std::uint32_t edges = 1; edges <= edge_limit; ++edges) {
         const std::optional<Hit> hit = intersect(scene, ray);
         if (!hit) return;

@@ -17,27 +17,27 @@ namespace photonlab {
 
 struct Photon {
     Vector position;
-    Vector incoming;    ///< unit, towards where the photon came from
-    Vector normal;      ///< shading normal, unit, on the side on which the photon arrived
-    Color power;        ///< flux that one emitted path carries here, relative to Scene::total_power; not divided by the
-                        ///< number of paths; times |incoming.normal| / |incoming.geometric normal| (Veach 1996)
-    std::uint32_t edges;    ///< edges of the path from the light to here; 1 when it came straight from the light
+    Vector incoming;  ///< unit, towards where the photon came from
+    Vector normal;    ///< shading normal, unit, on the side on which the photon arrived
+    Color power;      ///< flux that one emitted path carries here, relative to Scene::total_power; not divided by the
+                      ///< number of paths; times |incoming.normal| / |incoming.geometric normal| (Veach 1996)
+    std::uint32_t edges;  ///< edges of the path from the light to here; 1 when it came straight from the light
 };
 
 /// Photons of one pass, or of several passes joined.
 struct PhotonPass {
-    std::vector<Photon> photons;          ///< in path order
+    std::vector<Photon> photons;  ///< in path order
     std::uint64_t paths_emitted = 0;
-    std::uint64_t paths_cut = 0;          ///< ended by the cap of 10,000 edges
-    double power_cut = 0.0;               ///< what those still carried: mean channel, relative, summed over paths
-    std::uint64_t nonfinite = 0;          ///< photons refused for a non-finite position, direction or power
+    std::uint64_t paths_cut = 0;  ///< ended by the cap of 10,000 edges
+    double power_cut = 0.0;       ///< what those still carried: mean channel, relative, summed over paths
+    std::uint64_t nonfinite = 0;  ///< photons refused for a non-finite position, direction or power
 };
 
 struct PhotonSettings {
-    std::uint64_t paths = 100'000;    ///< emitted a pass
+    std::uint64_t paths = 100'000;  ///< emitted a pass
     std::uint64_t seed = 1;
-    int max_depth = -1;               ///< edges from camera to light, as in Mitsuba; a photon's own edges stay below it
-    bool store_direct = false;        ///< also store photons that came straight from the light
+    int max_depth = -1;         ///< edges from camera to light, as in Mitsuba; a photon's own edges stay below it
+    bool store_direct = false;  ///< also store photons that came straight from the light
 };
 
 /// Traces pass `pass` (counted from 1). A scene without light gives no photons and still counts its paths.

@@ -1,5 +1,5 @@
-// The loader by example: what public scene files contain is read as Mitsuba reads it, and every mistake in the table below
-// gets exactly the message beside it.
+// The loader by example: what public scene files contain is read as Mitsuba reads it, and every mistake in the table
+// below gets exactly the message beside it.
 
 #include "scene/loader.h"
 
@@ -70,9 +70,15 @@ VectorD normal_of(const MeshDescription& mesh, std::size_t triangle) {
 
 TEST_F(LoaderTest, EveryMistakeGetsItsMessage) {
     const std::string sensor = "<sensor type='perspective'/>";
-    const auto scene = [&](const std::string& inside) { return "<scene version='3.0.0'>\n" + inside + "\n" + sensor + "</scene>"; };
-    const auto shape = [&](const std::string& inside) { return scene("<shape type='rectangle'>\n" + inside + "</shape>"); };
-    const auto camera = [&](const std::string& inside) { return "<scene><sensor type='perspective'>\n" + inside + "</sensor></scene>"; };
+    const auto scene = [&](const std::string& inside) {
+        return "<scene version='3.0.0'>\n" + inside + "\n" + sensor + "</scene>";
+    };
+    const auto shape = [&](const std::string& inside) {
+        return scene("<shape type='rectangle'>\n" + inside + "</shape>");
+    };
+    const auto camera = [&](const std::string& inside) {
+        return "<scene><sensor type='perspective'>\n" + inside + "</sensor></scene>";
+    };
     write("cycle.xml", "<scene><include filename='cycle.xml'/></scene>");
     write("broken.xml", "<scene>\n\n<shape></scene>");
     write("no_faces.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
@@ -88,13 +94,16 @@ TEST_F(LoaderTest, EveryMistakeGetsItsMessage) {
         {"<scene>\n<shape>\n</scene>", "scene.xml:3: not well-formed XML: Start-end tags mismatch"},
         {"<mitsuba/>", "scene.xml:1: expected <scene>, got <mitsuba>"},
         {"<scene>\n</scene>", "scene.xml:1: expected a <sensor type=\"perspective\"> in the scene"},
-        {scene("<light/>"), "scene.xml:2: unknown element <light> in <scene>; known here: bsdf, default, emitter, include, "
-                            "integrator, sensor, shape"},
+        {scene("<light/>"),
+         "scene.xml:2: unknown element <light> in <scene>; known here: bsdf, default, emitter, include, "
+         "integrator, sensor, shape"},
         {scene("words"), "scene.xml:1: unexpected text \"\nwords\n\" inside <scene>"},
-        {scene("<shape type='teapot'/>"), "scene.xml:2: unknown shape \"teapot\"; known here: cube, disk, obj, rectangle, sphere"},
+        {scene("<shape type='teapot'/>"),
+         "scene.xml:2: unknown shape \"teapot\"; known here: cube, disk, obj, rectangle, sphere"},
         {scene("<shape/>"), "scene.xml:2: <shape> needs an attribute \"type\""},
         {scene("<bsdf type='roughglass'/>"), "scene.xml:2: unknown bsdf \"roughglass\"; known here: diffuse, twosided"},
-        {scene("<emitter type='sky'/>"), "scene.xml:2: unknown emitter \"sky\"; known here: area (in a shape), point (in the scene)"},
+        {scene("<emitter type='sky'/>"),
+         "scene.xml:2: unknown emitter \"sky\"; known here: area (in a shape), point (in the scene)"},
         {scene("<bsdf type='diffuse'>\n<float name='roughness' value='1'/></bsdf>"),
          "scene.xml:3: unknown property \"roughness\" of bsdf \"diffuse\"; known here: reflectance"},
         {scene("<bsdf type='diffuse'>\n<rgb name='reflectance' value='1.5'/></bsdf>"),
@@ -119,23 +128,29 @@ TEST_F(LoaderTest, EveryMistakeGetsItsMessage) {
          "scene.xml:3: intensity: expected values of at least 0, got -1"},
         {scene("<bsdf type='diffuse'>\n<string name='reflectance' value='red'/></bsdf>"),
          "scene.xml:3: property \"reflectance\": expected <float> or <rgb> or <spectrum> or <srgb>, got <string>"},
-        {scene("<bsdf type='diffuse'>\n<rgb name='reflectance' value='0'/>\n<rgb name='reflectance' value='0'/></bsdf>"),
+        {scene(
+             "<bsdf type='diffuse'>\n<rgb name='reflectance' value='0'/>\n<rgb name='reflectance' value='0'/></bsdf>"),
          "scene.xml:4: property \"reflectance\" stands twice"},
         {scene("<bsdf type='diffuse'>\n<rgb value='0'/></bsdf>"), "scene.xml:3: <rgb> needs an attribute \"name\""},
         {scene("<bsdf type='diffuse'>\n<colour name='reflectance' value='0'/></bsdf>"),
-         "scene.xml:3: unknown element <colour>; known here: boolean, float, integer, point, rgb, spectrum, srgb, string, transform, "
+         "scene.xml:3: unknown element <colour>; known here: boolean, float, integer, point, rgb, spectrum, srgb, "
+         "string, transform, "
          "vector, bsdf, emitter, film, integrator, medium, phase, ref, rfilter, sampler, sensor, shape, texture"},
         {scene("<bsdf type='diffuse'>\n<texture type='bitmap' name='reflectance'/></bsdf>"),
          "scene.xml:3: diffuse: expected reflectance as a colour, got <texture>"},
         {scene("<bsdf type='twosided'/>"), "scene.xml:2: twosided: expected one nested bsdf, got 0"},
         {scene("<bsdf type='twosided'>\n<bsdf type='twosided'><bsdf type='diffuse'/></bsdf></bsdf>"),
          "scene.xml:3: twosided: expected a one-sided bsdf, got bsdf \"twosided\""},
-        {scene("<bsdf type='diffuse' id='a'/>\n<bsdf type='diffuse' id='a'/>"), "scene.xml:3: id \"a\" stands already at scene.xml:2"},
+        {scene("<bsdf type='diffuse' id='a'/>\n<bsdf type='diffuse' id='a'/>"),
+         "scene.xml:3: id \"a\" stands already at scene.xml:2"},
         {shape("<ref id='missing'/>"), "scene.xml:3: nothing in this scene has the id \"missing\""},
         {shape("<ref/>"), "scene.xml:3: <ref> needs an attribute \"id\""},
-        {shape("<bsdf type='diffuse'/>\n<bsdf type='diffuse'/>"), "scene.xml:4: expected one bsdf in a shape, got a second"},
-        {shape("<emitter type='area'/>\n<emitter type='area'/>"), "scene.xml:4: expected one emitter in a shape, got a second"},
-        {shape("<emitter type='point'/>"), "scene.xml:3: unknown emitter \"point\"; known here: area (in a shape), point (in the scene)"},
+        {shape("<bsdf type='diffuse'/>\n<bsdf type='diffuse'/>"),
+         "scene.xml:4: expected one bsdf in a shape, got a second"},
+        {shape("<emitter type='area'/>\n<emitter type='area'/>"),
+         "scene.xml:4: expected one emitter in a shape, got a second"},
+        {shape("<emitter type='point'/>"),
+         "scene.xml:3: unknown emitter \"point\"; known here: area (in a shape), point (in the scene)"},
         {shape("<emitter type='area'>\n<rgb name='radiance' value='-1'/></emitter>"),
          "scene.xml:4: radiance: expected values of at least 0, got -1 -1 -1"},
         {shape("<float name='radius' value='1'/>"),
@@ -143,31 +158,41 @@ TEST_F(LoaderTest, EveryMistakeGetsItsMessage) {
         {shape("<boolean name='flip_normals' value='yes'/>"), "scene.xml:3: expected true or false, got \"yes\""},
         {shape("<transform name='to_world'>\n<skew x='1'/></transform>"),
          "scene.xml:4: unknown transform <skew>; known here: lookat, matrix, rotate, scale, translate"},
-        {shape("<transform name='to_world'>\n<matrix value='1 2 3'/></transform>"), "scene.xml:4: expected 16 or 9 numbers in <matrix>, got 3"},
+        {shape("<transform name='to_world'>\n<matrix value='1 2 3'/></transform>"),
+         "scene.xml:4: expected 16 or 9 numbers in <matrix>, got 3"},
         {shape("<transform name='to_world'>\n<scale value='0'/></transform>"),
          "scene.xml:3: expected an invertible transform with finite values"},
         {shape("<transform name='to_world'>\n<rotate angle='90'/></transform>"),
          "scene.xml:4: <rotate> needs x, y, z or a value of 1 or 3 numbers"},
-        {shape("<transform name='to_world'>\n<translate x='1e400'/></transform>"), "scene.xml:4: expected a finite number, got \"1e400\""},
-        {shape("<transform name='to_world'>\n<translate x='1m'/></transform>"), "scene.xml:4: expected a finite number, got \"1m\""},
-        {scene("<shape type='sphere'>\n<float name='radius' value='0'/></shape>"), "scene.xml:3: radius: expected a number above 0, got 0"},
+        {shape("<transform name='to_world'>\n<translate x='1e400'/></transform>"),
+         "scene.xml:4: expected a finite number, got \"1e400\""},
+        {shape("<transform name='to_world'>\n<translate x='1m'/></transform>"),
+         "scene.xml:4: expected a finite number, got \"1m\""},
+        {scene("<shape type='sphere'>\n<float name='radius' value='0'/></shape>"),
+         "scene.xml:3: radius: expected a number above 0, got 0"},
         {scene("<shape type='sphere'><transform name='to_world'><scale x='2'/></transform></shape>"),
          "scene.xml:2: expected a to_world that scales all directions alike: this shape must stay round"},
         {scene("<shape type='obj'/>"), "scene.xml:2: obj: expected a <string name=\"filename\">"},
         {scene("<shape type='obj'>\n<string name='filename' value='none.obj'/></shape>"),
          "scene.xml:3: cannot read the file \"none.obj\""},
-        {scene("<shape type='obj'><string name='filename' value='no_faces.obj'/></shape>"), "no_faces.obj: expected at least one face"},
+        {scene("<shape type='obj'><string name='filename' value='no_faces.obj'/></shape>"),
+         "no_faces.obj: expected at least one face"},
         {scene("<shape type='obj'><string name='filename' value='bad_index.obj'/></shape>"),
          "bad_index.obj:4: a face names vertex 4, but there are 3"},
-        {scene("<shape type='obj'><string name='filename' value='nan.obj'/></shape>"), "nan.obj:2: expected a finite number, got \"nan\""},
-        {scene("<shape type='obj'><string name='filename' value='short.obj'/></shape>"), "short.obj:2: v: expected 3 numbers, got 2"},
-        {scene("<shape type='obj'><string name='filename' value='word.obj'/></shape>"), "word.obj:1: expected a finite number, got \"zero\""},
-        {scene("<shape type='obj'><string name='filename' value='edge.obj'/></shape>"), "edge.obj:3: f: expected 3 to 255 corners, got 2"},
+        {scene("<shape type='obj'><string name='filename' value='nan.obj'/></shape>"),
+         "nan.obj:2: expected a finite number, got \"nan\""},
+        {scene("<shape type='obj'><string name='filename' value='short.obj'/></shape>"),
+         "short.obj:2: v: expected 3 numbers, got 2"},
+        {scene("<shape type='obj'><string name='filename' value='word.obj'/></shape>"),
+         "word.obj:1: expected a finite number, got \"zero\""},
+        {scene("<shape type='obj'><string name='filename' value='edge.obj'/></shape>"),
+         "edge.obj:3: f: expected 3 to 255 corners, got 2"},
         {scene("<shape type='obj'><string name='filename' value='lost_quad.obj'/></shape>"),
          "lost_quad.obj:6: a face names vertex 9, but there are 4"},
         {scene("<shape type='obj' filename='mesh.obj'/>"),
          "scene.xml:2: unknown attribute \"filename\" of <shape>; known here: id, name, type"},
-        {shape("<float name='radius' value='1'><bsdf type='diffuse'/></float>"), "scene.xml:3: unexpected <bsdf> inside <float>"},
+        {shape("<float name='radius' value='1'><bsdf type='diffuse'/></float>"),
+         "scene.xml:3: unexpected <bsdf> inside <float>"},
         {shape("<transform name='to_world'>\n<translate value='1 2 3' x='4'/></transform>"),
          "scene.xml:4: <translate>: expected value or x, y, z, got both"},
         {shape("<transform name='to_world'>\n<translate value='1 2'/></transform>"),
@@ -181,16 +206,20 @@ TEST_F(LoaderTest, EveryMistakeGetsItsMessage) {
         {scene("<include filename='none.xml'/>"), "scene.xml:2: cannot read the file \"none.xml\""},
         {scene("<include filename='cycle.xml'/>"), "cycle.xml:1: \"cycle.xml\" includes itself"},
         {scene("<include filename='broken.xml'/>"), "broken.xml:3: not well-formed XML: Start-end tags mismatch"},
-        {shape("<boolean name='flip_normals' value='$flip'/>"), "scene.xml:3: $flip has no <default> before it and no value was given"},
+        {shape("<boolean name='flip_normals' value='$flip'/>"),
+         "scene.xml:3: $flip has no <default> before it and no value was given"},
         {scene("<default name='a'/>"), "scene.xml:2: <default> needs an attribute \"value\""},
-        {"<scene><sensor type='thinlens'/></scene>", "scene.xml:1: unknown sensor \"thinlens\"; known here: perspective"},
+        {"<scene><sensor type='thinlens'/></scene>",
+         "scene.xml:1: unknown sensor \"thinlens\"; known here: perspective"},
         {camera("<float name='fov' value='180'/>"), "scene.xml:2: fov: expected degrees in (0, 180), got 180"},
         {camera("<string name='fov_axis' value='z'/><float name='fov' value='40'/>"),
          "scene.xml:2: unknown fov_axis \"z\"; known here: diagonal, larger, smaller, x, y"},
         {camera("<float name='principal_point_offset_x' value='0.1'/>"),
          "scene.xml:2: principal_point_offset_x: expected 0, a shifted image plane is not known here"},
-        {camera("<film type='hdrfilm'>\n<integer name='width' value='0'/></film>"), "scene.xml:3: width: expected 1 to 16384 pixels, got 0"},
-        {camera("<film type='hdrfilm'>\n<integer name='width' value='1.5'/></film>"), "scene.xml:3: expected a whole number, got \"1.5\""},
+        {camera("<film type='hdrfilm'>\n<integer name='width' value='0'/></film>"),
+         "scene.xml:3: width: expected 1 to 16384 pixels, got 0"},
+        {camera("<film type='hdrfilm'>\n<integer name='width' value='1.5'/></film>"),
+         "scene.xml:3: expected a whole number, got \"1.5\""},
         {camera("<film type='hdrfilm'>\n<integer name='crop_width' value='5'/></film>"),
          "scene.xml:3: crop_width: expected 768, cropped films are not known here, got 5"},
         {camera("<transform name='to_world'>\n<lookat origin='0,0,0' target='0,0,0' up='0,1,0'/></transform>"),
@@ -218,40 +247,48 @@ TEST_F(LoaderTest, AFileThatGrowsWithoutEndIsRefusedNotFollowed) {
     std::string deep;
     for (int i = 0; i < 100'000; ++i) deep += "<bsdf type='twosided'>";
     for (int i = 0; i < 100'000; ++i) deep += "</bsdf>";
-    EXPECT_EQ(message_of("<scene>" + deep + "</scene>"), "scene.xml:1: expected at most 100 elements inside each other");
+    EXPECT_EQ(message_of("<scene>" + deep + "</scene>"),
+              "scene.xml:1: expected at most 100 elements inside each other");
 
     std::string doubling = "<default name='a0' value='0123456789'/>";
     for (int i = 1; i < 40; ++i) {
         const std::string last = "$a" + std::to_string(i - 1);
         doubling += "<default name='a" + std::to_string(i) + "' value='" + last + last + "'/>";
     }
-    EXPECT_EQ(message_of("<scene>" + doubling + "</scene>"), "scene.xml:1: expected at most 65536 characters once $names are put in");
+    EXPECT_EQ(message_of("<scene>" + doubling + "</scene>"),
+              "scene.xml:1: expected at most 65536 characters once $names are put in");
 
     for (int i = 0; i < 20; ++i)
-        write("level" + std::to_string(i) + ".xml", "<scene><include filename='level" + std::to_string(i + 1) + ".xml'/></scene>");
-    EXPECT_EQ(message_of("<scene><include filename='level0.xml'/></scene>"), "level13.xml:1: expected at most 15 nested includes");
+        write("level" + std::to_string(i) + ".xml",
+              "<scene><include filename='level" + std::to_string(i + 1) + ".xml'/></scene>");
+    EXPECT_EQ(message_of("<scene><include filename='level0.xml'/></scene>"),
+              "level13.xml:1: expected at most 15 nested includes");
 }
 
 TEST_F(LoaderTest, OneValueStandsForThreeAsInMitsuba) {
-    const auto scene = load_with_sensor("<shape type='cube'><transform name='to_world'><scale value='2'/><translate value='3'/>"
-                                        "</transform></shape><shape type='sphere'><point name='center' value='4'/></shape>");
+    const auto scene = load_with_sensor(
+        "<shape type='cube'><transform name='to_world'><scale value='2'/><translate value='3'/>"
+        "</transform></shape><shape type='sphere'><point name='center' value='4'/></shape>");
     for (const VectorD& corner : mesh_of(scene).positions)
         for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(std::abs(corner[axis] - 3.0), 2.0, 1e-12);
     expect_near(std::get<SphereDescription>(scene.shapes.at(1).geometry).centre, {4, 4, 4});
 }
 
 TEST_F(LoaderTest, DisksMayBeScaledAlongTheirNormal) {
-    const auto scene = load_with_sensor("<shape type='disk'><transform name='to_world'><scale x='2' y='2' z='7'/><rotate x='1' angle='90'/>"
-                                        "</transform></shape>");
+    const auto scene = load_with_sensor(
+        "<shape type='disk'><transform name='to_world'><scale x='2' y='2' z='7'/><rotate x='1' angle='90'/>"
+        "</transform></shape>");
     const auto& disk = std::get<DiskDescription>(scene.shapes.at(0).geometry);
     EXPECT_DOUBLE_EQ(disk.radius, 2.0);
     expect_near(disk.normal, {0, -1, 0});
 }
 
 TEST_F(LoaderTest, ACropOfTheWholeFilmIsNoCrop) {
-    const auto scene = load("<scene><sensor type='perspective'><film type='hdrfilm'><integer name='width' value='8'/>"
-                            "<integer name='height' value='6'/><integer name='cropOffsetX' value='0'/><integer name='crop_offset_y' value='0'/>"
-                            "<integer name='crop_width' value='8'/><integer name='cropHeight' value='6'/></film></sensor></scene>");
+    const auto scene = load(
+        "<scene><sensor type='perspective'><film type='hdrfilm'><integer name='width' value='8'/>"
+        "<integer name='height' value='6'/><integer name='cropOffsetX' value='0'/><integer name='crop_offset_y' "
+        "value='0'/>"
+        "<integer name='crop_width' value='8'/><integer name='cropHeight' value='6'/></film></sensor></scene>");
     EXPECT_EQ(scene.camera.height, 6);
 }
 
@@ -266,14 +303,16 @@ TEST_F(LoaderTest, TransformsApplyInTheOrderInWhichTheyStand) {
 
 TEST_F(LoaderTest, MatricesAreRowsOfColumnVectorsWithOldExponents) {
     const auto scene = load_with_sensor(
-        "<shape type='rectangle'><transform name='toWorld'><matrix value='-4.37114e-008 1 4.37114e-008 5 0 -8.74228e-008 2 6 "
+        "<shape type='rectangle'><transform name='toWorld'><matrix value='-4.37114e-008 1 4.37114e-008 5 0 "
+        "-8.74228e-008 2 6 "
         "1 4.37114e-008 1.91069e-015 7 0 0 0 1'/></transform></shape>");
     expect_near(mesh_of(scene).positions[2], {1 + 5 - 4.37114e-8, 6 - 8.74228e-8, 8 + 4.37114e-8}, 1e-9);
 }
 
 TEST_F(LoaderTest, LookAtHasXToTheLeftYUpAndZForward) {
-    const auto scene = load("<scene><sensor type='perspective'><transform name='to_world'>"
-                            "<lookat origin='1,2,3' target='1,2,10' up='0,1,0'/></transform></sensor></scene>");
+    const auto scene = load(
+        "<scene><sensor type='perspective'><transform name='to_world'>"
+        "<lookat origin='1,2,3' target='1,2,10' up='0,1,0'/></transform></sensor></scene>");
     const Matrix& m = scene.camera.to_world;
     expect_near({m[0][0], m[0][1], m[0][2]}, {1, 0, 0});
     expect_near({m[1][0], m[1][1], m[1][2]}, {0, 1, 0});
@@ -282,8 +321,9 @@ TEST_F(LoaderTest, LookAtHasXToTheLeftYUpAndZForward) {
 }
 
 TEST_F(LoaderTest, MirroringKeepsTheOutsideOutside) {
-    const auto scene = load_with_sensor("<shape type='cube'><transform name='to_world'><scale x='-1'/></transform></shape>"
-                                        "<shape type='cube'/><shape type='cube'><boolean name='flipNormals' value='true'/></shape>");
+    const auto scene = load_with_sensor(
+        "<shape type='cube'><transform name='to_world'><scale x='-1'/></transform></shape>"
+        "<shape type='cube'/><shape type='cube'><boolean name='flipNormals' value='true'/></shape>");
     for (std::size_t shape = 0; shape < 3; ++shape)
         for (std::size_t triangle = 0; triangle < 12; ++triangle) {
             const MeshDescription& mesh = mesh_of(scene, shape);
@@ -294,9 +334,12 @@ TEST_F(LoaderTest, MirroringKeepsTheOutsideOutside) {
 
 TEST_F(LoaderTest, FieldOfViewFollowsItsAxis) {
     const auto fov = [&](const std::string& axis) {
-        return load("<scene><sensor type='perspective'><float name='fov' value='60'/><string name='fovAxis' value='" + axis +
-                    "'/><film type='hdrfilm'><integer name='width' value='200'/><integer name='height' value='100'/></film>"
-                    "</sensor></scene>").camera.fov_x;
+        return load("<scene><sensor type='perspective'><float name='fov' value='60'/><string name='fovAxis' value='" +
+                    axis +
+                    "'/><film type='hdrfilm'><integer name='width' value='200'/><integer name='height' "
+                    "value='100'/></film>"
+                    "</sensor></scene>")
+            .camera.fov_x;
     };
     const double t = std::tan(pi / 6);
     EXPECT_NEAR(fov("x"), 60.0, 1e-12);
@@ -307,15 +350,17 @@ TEST_F(LoaderTest, FieldOfViewFollowsItsAxis) {
 }
 
 TEST_F(LoaderTest, WithoutAnAngleTheLensIsFiftyMillimetres) {
-    const auto scene = load("<scene><sensor type='perspective'><film type='hdrfilm'><integer name='width' value='300'/>"
-                            "<integer name='height' value='200'/></film></sensor></scene>");
+    const auto scene = load(
+        "<scene><sensor type='perspective'><film type='hdrfilm'><integer name='width' value='300'/>"
+        "<integer name='height' value='200'/></film></sensor></scene>");
     EXPECT_NEAR(scene.camera.fov_x, 2 * std::atan(36.0 / 100.0) * 180 / pi, 1e-9);
 }
 
 TEST_F(LoaderTest, DefaultsAreReplacedByParameters) {
-    const std::string text = "<scene><default name='w' value='12'/><default name='ww' value='34'/><sensor type='perspective'>"
-                             "<film type='hdrfilm'><integer name='width' value='$ww'/><integer name='height' value='$w'/></film>"
-                             "</sensor></scene>";
+    const std::string text =
+        "<scene><default name='w' value='12'/><default name='ww' value='34'/><sensor type='perspective'>"
+        "<film type='hdrfilm'><integer name='width' value='$ww'/><integer name='height' value='$w'/></film>"
+        "</sensor></scene>";
     EXPECT_EQ(load(text).camera.width, 34);
     EXPECT_EQ(load(text).camera.height, 12);
     EXPECT_EQ(load(text, {{"w", "56"}}).camera.height, 56);
@@ -325,10 +370,13 @@ TEST_F(LoaderTest, DefaultsAreReplacedByParameters) {
 
 TEST_F(LoaderTest, IncludesAndNestedReferencesAreFollowed) {
     std::filesystem::create_directories(folder_ / "parts");
-    write("parts/materials.xml", "<scene><include filename='inner.xml'/><bsdf type='twosided' id='wall'><ref id='paint'/></bsdf></scene>");
-    write("parts/inner.xml", "<scene><bsdf type='diffuse' id='paint'><rgb name='reflectance' value='$level'/></bsdf></scene>");
-    const auto scene = load("<scene><default name='level' value='0.25'/><sensor type='perspective'/>"
-                            "<shape type='sphere'><ref name='bsdf' id='wall'/></shape><include filename='parts/materials.xml'/></scene>");
+    write("parts/materials.xml",
+          "<scene><include filename='inner.xml'/><bsdf type='twosided' id='wall'><ref id='paint'/></bsdf></scene>");
+    write("parts/inner.xml",
+          "<scene><bsdf type='diffuse' id='paint'><rgb name='reflectance' value='$level'/></bsdf></scene>");
+    const auto scene = load(
+        "<scene><default name='level' value='0.25'/><sensor type='perspective'/>"
+        "<shape type='sphere'><ref name='bsdf' id='wall'/></shape><include filename='parts/materials.xml'/></scene>");
     const Material& material = scene.materials.at(scene.shapes.at(0).material);
     EXPECT_TRUE(material.two_sided);
     EXPECT_FLOAT_EQ(std::get<Diffuse>(material.bsdf).reflectance.x, 0.25f);
@@ -339,14 +387,15 @@ TEST_F(LoaderTest, FilesOfAnIncludeAreLookedForBesideTheSceneAndThenBesideTheInc
     const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     write("a.obj", mesh);
     write("fragments/b.obj", mesh);
-    write("fragments/shapes.xml", "<scene><shape type='obj'><string name='filename' value='a.obj'/></shape>"
-                                  "<shape type='obj'><string name='filename' value='b.obj'/></shape></scene>");
+    write("fragments/shapes.xml",
+          "<scene><shape type='obj'><string name='filename' value='a.obj'/></shape>"
+          "<shape type='obj'><string name='filename' value='b.obj'/></shape></scene>");
     EXPECT_EQ(load_with_sensor("<include filename='fragments/shapes.xml'/>").shapes.size(), 2u);
 }
 
 TEST_F(LoaderTest, PublicCornellBoxesOpenUnmodified) {
-    // In the manner of the scenes that come with Mitsuba 3 and of public collections: defaults, references before use in a
-    // bsdf, a light with black reflectance, settings for other programs.
+    // In the manner of the scenes that come with Mitsuba 3 and of public collections: defaults, references before use
+    // in a bsdf, a light with black reflectance, settings for other programs.
     const auto scene = load(R"(<?xml version="1.0" encoding="utf-8"?>
 <scene version="3.0.0">
     <default name="spp" value="64"/> <default name="resx" value="256"/> <default name="max_depth" value="6"/>
@@ -381,7 +430,8 @@ TEST_F(LoaderTest, PublicCornellBoxesOpenUnmodified) {
 
 TEST_F(LoaderTest, ColoursAreLinearUnlessTheySayOtherwise) {
     const auto reflectance = [&](const std::string& property) {
-        const auto scene = load_with_sensor("<shape type='sphere'><bsdf type='diffuse'>" + property + "</bsdf></shape>");
+        const auto scene =
+            load_with_sensor("<shape type='sphere'><bsdf type='diffuse'>" + property + "</bsdf></shape>");
         return std::get<Diffuse>(scene.materials.at(0).bsdf).reflectance;
     };
     EXPECT_FLOAT_EQ(reflectance("<rgb name='reflectance' value='0.1 0.2,0.3'/>").z, 0.3f);
@@ -393,10 +443,11 @@ TEST_F(LoaderTest, ColoursAreLinearUnlessTheySayOtherwise) {
 }
 
 TEST_F(LoaderTest, ASpectrumThatEmitsIsEqualEnergyWhiteAndOneThatReflectsIsGrey) {
-    const auto scene = load_with_sensor("<shape type='sphere'>"
-                                        "<bsdf type='diffuse'><spectrum name='reflectance' value='300:0.25, 900:0.25'/></bsdf>"
-                                        "<emitter type='area'><spectrum name='radiance' value='300:2, 900:2'/></emitter></shape>"
-                                        "<emitter type='point'><spectrum name='intensity' value='2'/></emitter>");
+    const auto scene = load_with_sensor(
+        "<shape type='sphere'>"
+        "<bsdf type='diffuse'><spectrum name='reflectance' value='300:0.25, 900:0.25'/></bsdf>"
+        "<emitter type='area'><spectrum name='radiance' value='300:2, 900:2'/></emitter></shape>"
+        "<emitter type='point'><spectrum name='intensity' value='2'/></emitter>");
     const Color reflectance = std::get<Diffuse>(scene.materials.at(scene.shapes.at(0).material).bsdf).reflectance;
     for (const float channel : {reflectance.x, reflectance.y, reflectance.z}) EXPECT_NEAR(channel, 0.25, 1e-4);
     const ColorD white(1.20479, 0.94829, 0.90892);  // XYZ (1, 1, 1) in linear sRGB
@@ -406,27 +457,35 @@ TEST_F(LoaderTest, ASpectrumThatEmitsIsEqualEnergyWhiteAndOneThatReflectsIsGrey)
     }
 }
 
-// The red wall as measured at Cornell, and the linear sRGB that Mitsuba's documentation prints for it ("Scene parsing and
-// parameters", version 2, which weights with the observer alone).
+// The red wall as measured at Cornell, and the linear sRGB that Mitsuba's documentation prints for it ("Scene parsing
+// and parameters", version 2, which weights with the observer alone).
 TEST_F(LoaderTest, TheMeasuredRedWallHasItsPublishedRgb) {
     const auto scene = load_with_sensor(
         "<emitter type='point'><spectrum name='intensity' value='"
-        "400:0.04, 404:0.046, 408:0.048, 412:0.053, 416:0.049, 420:0.05, 424:0.053, 428:0.055, 432:0.057, 436:0.056, 440:0.059, "
-        "444:0.057, 448:0.061, 452:0.061, 456:0.06, 460:0.062, 464:0.062, 468:0.062, 472:0.061, 476:0.062, 480:0.06, 484:0.059, "
-        "488:0.057, 492:0.058, 496:0.058, 500:0.058, 504:0.056, 508:0.055, 512:0.056, 516:0.059, 520:0.057, 524:0.055, 528:0.059, "
-        "532:0.059, 536:0.058, 540:0.059, 544:0.061, 548:0.061, 552:0.063, 556:0.063, 560:0.067, 564:0.068, 568:0.072, 572:0.08, "
-        "576:0.09, 580:0.099, 584:0.124, 588:0.154, 592:0.192, 596:0.255, 600:0.287, 604:0.349, 608:0.402, 612:0.443, 616:0.487, "
-        "620:0.513, 624:0.558, 628:0.584, 632:0.62, 636:0.606, 640:0.609, 644:0.651, 648:0.612, 652:0.61, 656:0.65, 660:0.638, "
-        "664:0.627, 668:0.62, 672:0.63, 676:0.628, 680:0.642, 684:0.639, 688:0.657, 692:0.639, 696:0.635, 700:0.642'/></emitter>");
+        "400:0.04, 404:0.046, 408:0.048, 412:0.053, 416:0.049, 420:0.05, 424:0.053, 428:0.055, 432:0.057, 436:0.056, "
+        "440:0.059, "
+        "444:0.057, 448:0.061, 452:0.061, 456:0.06, 460:0.062, 464:0.062, 468:0.062, 472:0.061, 476:0.062, 480:0.06, "
+        "484:0.059, "
+        "488:0.057, 492:0.058, 496:0.058, 500:0.058, 504:0.056, 508:0.055, 512:0.056, 516:0.059, 520:0.057, 524:0.055, "
+        "528:0.059, "
+        "532:0.059, 536:0.058, 540:0.059, 544:0.061, 548:0.061, 552:0.063, 556:0.063, 560:0.067, 564:0.068, 568:0.072, "
+        "572:0.08, "
+        "576:0.09, 580:0.099, 584:0.124, 588:0.154, 592:0.192, 596:0.255, 600:0.287, 604:0.349, 608:0.402, 612:0.443, "
+        "616:0.487, "
+        "620:0.513, 624:0.558, 628:0.584, 632:0.62, 636:0.606, 640:0.609, 644:0.651, 648:0.612, 652:0.61, 656:0.65, "
+        "660:0.638, "
+        "664:0.627, 668:0.62, 672:0.63, 676:0.628, 680:0.642, 684:0.639, 688:0.657, 692:0.639, 696:0.635, "
+        "700:0.642'/></emitter>");
     EXPECT_NEAR(scene.point_lights.at(0).intensity.x, 0.569717, 5e-5);
     EXPECT_NEAR(scene.point_lights.at(0).intensity.y, 0.0430141, 5e-5);
     EXPECT_NEAR(scene.point_lights.at(0).intensity.z, 0.0443234, 5e-5);
 }
 
 TEST_F(LoaderTest, ShapesWithoutABsdfAreGreyAndPointLightsHaveAPlace) {
-    const auto scene = load_with_sensor("<shape type='disk'><transform name='to_world'><scale value='3'/><translate z='1'/></transform></shape>"
-                                        "<emitter type='point'><transform name='to_world'><translate y='2'/></transform>"
-                                        "<rgb name='intensity' value='1 2 3'/></emitter>");
+    const auto scene = load_with_sensor(
+        "<shape type='disk'><transform name='to_world'><scale value='3'/><translate z='1'/></transform></shape>"
+        "<emitter type='point'><transform name='to_world'><translate y='2'/></transform>"
+        "<rgb name='intensity' value='1 2 3'/></emitter>");
     EXPECT_FLOAT_EQ(std::get<Diffuse>(scene.materials.at(scene.shapes[0].material).bsdf).reflectance.x, 0.5f);
     const auto& disk = std::get<DiskDescription>(scene.shapes[0].geometry);
     EXPECT_DOUBLE_EQ(disk.radius, 3.0);
@@ -435,8 +494,9 @@ TEST_F(LoaderTest, ShapesWithoutABsdfAreGreyAndPointLightsHaveAPlace) {
 }
 
 TEST_F(LoaderTest, SpheresTakeCentreRadiusAndTransform) {
-    const auto scene = load_with_sensor("<shape type='sphere'><point name='center' x='1' y='2' z='3'/><float name='radius' value='2'/>"
-                                        "<transform name='to_world'><scale value='10'/><translate x='5'/></transform></shape>");
+    const auto scene = load_with_sensor(
+        "<shape type='sphere'><point name='center' x='1' y='2' z='3'/><float name='radius' value='2'/>"
+        "<transform name='to_world'><scale value='10'/><translate x='5'/></transform></shape>");
     const auto& sphere = std::get<SphereDescription>(scene.shapes.at(0).geometry);
     expect_near(sphere.centre, {15, 20, 30});
     EXPECT_DOUBLE_EQ(sphere.radius, 20.0);

@@ -50,7 +50,8 @@ protected:
 double area_of(const MeshDescription& mesh) {
     double area = 0.0;
     for (const auto& t : mesh.triangles)
-        area += 0.5 * (mesh.positions[t.y] - mesh.positions[t.x]).cross(mesh.positions[t.z] - mesh.positions[t.x]).length();
+        area +=
+            0.5 * (mesh.positions[t.y] - mesh.positions[t.x]).cross(mesh.positions[t.z] - mesh.positions[t.x]).length();
     return area;
 }
 
@@ -93,12 +94,14 @@ TEST_F(ObjMeshTest, LinesEndInEveryWayAndAreCountedTheSame) {
 }
 
 TEST_F(ObjMeshTest, NumbersAreReadExactlyHoweverTheyAreWritten) {
-    const auto mesh = load("v .5 -.25 +2\nv 1.5e+2 3. -4.37114e-008\nv 552.8 5E-1 0 1.0\nv 549.6 0.1 1 0.9 0.8 0.7\nf 1 2 3 4\n");
+    const auto mesh =
+        load("v .5 -.25 +2\nv 1.5e+2 3. -4.37114e-008\nv 552.8 5E-1 0 1.0\nv 549.6 0.1 1 0.9 0.8 0.7\nf 1 2 3 4\n");
     const VectorD expected[] = {{0.5, -0.25, 2.0}, {150.0, 3.0, -4.37114e-8}, {552.8, 0.5, 0.0}, {549.6, 0.1, 1.0}};
     ASSERT_EQ(mesh.positions.size(), 4u);
     for (std::size_t i = 0; i < 4; ++i)
         for (int axis = 0; axis < 3; ++axis)
-            EXPECT_NEAR(mesh.positions[i][axis], expected[i][axis], 1e-15 * std::abs(expected[i][axis])) << i << " " << axis;
+            EXPECT_NEAR(mesh.positions[i][axis], expected[i][axis], 1e-15 * std::abs(expected[i][axis]))
+                << i << " " << axis;
 }
 
 TEST_F(ObjMeshTest, PolygonsBecomeFansAroundTheirFirstCorner) {
@@ -134,7 +137,8 @@ TEST_F(ObjMeshTest, ObjectsGroupsMaterialsAndCommentsMakeOneMesh) {
 }
 
 TEST_F(ObjMeshTest, VerticesWithDifferentNormalsAreKeptApart) {
-    const std::string edge = "v 0 0 0\nv 0 0 1\nv 1 0 0\nv 0 1 0\nvn 0 -3 0\nvn -2 0 0\nf 1//1 3//1 2//1\nf 1//2 2//2 4//2\n";
+    const std::string edge =
+        "v 0 0 0\nv 0 0 1\nv 1 0 0\nv 0 1 0\nvn 0 -3 0\nvn -2 0 0\nf 1//1 3//1 2//1\nf 1//2 2//2 4//2\n";
     EXPECT_EQ(load(edge, true).positions.size(), 4u);
     const auto mesh = load(edge, false);
     ASSERT_EQ(mesh.positions.size(), 6u);
@@ -144,8 +148,8 @@ TEST_F(ObjMeshTest, VerticesWithDifferentNormalsAreKeptApart) {
 }
 
 TEST_F(ObjMeshTest, ComputedNormalsWeighFacesByTheirAngle) {
-    // At the origin: one face spans 90 degrees in two triangles of 45, the other 90 degrees in one. By angle they weigh the
-    // same however they are cut; by area or by count they would not.
+    // At the origin: one face spans 90 degrees in two triangles of 45, the other 90 degrees in one. By angle they weigh
+    // the same however they are cut; by area or by count they would not.
     const auto mesh = load("v 0 0 0\nv 1 0 0\nv 5 5 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\nf 1 4 5\n", false);
     const VectorD expected = VectorD(1, 0, 1).normalized();
     for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(mesh.normals[mesh.triangles[0].x][axis], expected[axis], 1e-12);

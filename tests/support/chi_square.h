@@ -1,5 +1,5 @@
-// Whether samples follow a density: the domain is cut into cells, and counts are compared with the density's integral over
-// each. [Pearson 1900; as in Nori and Mitsuba]
+// Whether samples follow a density: the domain is cut into cells, and counts are compared with the density's integral
+// over each. [Pearson 1900; as in Nori and Mitsuba]
 
 #pragma once
 
@@ -11,7 +11,8 @@
 
 namespace photonlab {
 
-/// Upper tail of the chi-square distribution, by Wilson and Hilferty's normal approximation (good to 1e-4 from 30 degrees on).
+/// Upper tail of the chi-square distribution, by Wilson and Hilferty's normal approximation (good to 1e-4 from 30
+/// degrees on).
 inline double chi_square_tail(double statistic, double degrees) {
     const double spread = 2.0 / (9.0 * degrees);
     const double z = (std::cbrt(statistic / degrees) - (1.0 - spread)) / std::sqrt(spread);
@@ -19,7 +20,8 @@ inline double chi_square_tail(double statistic, double degrees) {
 }
 
 /// Integral of `density` over [x0, x1] x [y0, y1] by the midpoint rule, 16 x 16.
-inline double cell_integral(const std::function<double(double, double)>& density, double x0, double x1, double y0, double y1) {
+inline double cell_integral(const std::function<double(double, double)>& density, double x0, double x1, double y0,
+                            double y1) {
     constexpr int steps = 16;
     double sum = 0.0;
     for (int i = 0; i < steps; ++i)
@@ -28,11 +30,11 @@ inline double cell_integral(const std::function<double(double, double)>& density
     return sum * (x1 - x0) * (y1 - y0) / (steps * steps);
 }
 
-/// Expects that `samples` of `draw` (each in [x_min, x_max] x [y_min, y_max]) follow `density`, which integrates to one there.
-/// Fails by chance with probability 1e-4 (the seed is fixed, so it fails always or never).
+/// Expects that `samples` of `draw` (each in [x_min, x_max] x [y_min, y_max]) follow `density`, which integrates to one
+/// there. Fails by chance with probability 1e-4 (the seed is fixed, so it fails always or never).
 inline void expect_distributed(const std::function<std::pair<double, double>()>& draw,
-                               const std::function<double(double, double)>& density, double x_min, double x_max, double y_min,
-                               double y_max, int samples = 200'000) {
+                               const std::function<double(double, double)>& density, double x_min, double x_max,
+                               double y_min, double y_max, int samples = 200'000) {
     constexpr int cells = 12;
     std::vector<double> counts(cells * cells, 0.0);
     for (int i = 0; i < samples; ++i) {
@@ -56,7 +58,7 @@ inline void expect_distributed(const std::function<std::pair<double, double>()>&
             total += share;
             const double expected = share * samples;
             const double count = counts[static_cast<std::size_t>(row * cells + column)];
-            if (expected < 10.0) {    // too few for the chi-square approximation: together
+            if (expected < 10.0) {  // too few for the chi-square approximation: together
                 pooled_count += count;
                 pooled_expected += expected;
                 continue;
@@ -71,7 +73,8 @@ inline void expect_distributed(const std::function<std::pair<double, double>()>&
         EXPECT_LE(pooled_count, 10.0 + 5.0 * std::sqrt(10.0));
     }
     EXPECT_NEAR(total, 1.0, 0.01) << "the density does not integrate to one";
-    EXPECT_GT(chi_square_tail(statistic, used - 1), 1e-4) << "chi-square " << statistic << " with " << used - 1 << " degrees";
+    EXPECT_GT(chi_square_tail(statistic, used - 1), 1e-4)
+        << "chi-square " << statistic << " with " << used - 1 << " degrees";
 }
 
 }  // namespace photonlab
