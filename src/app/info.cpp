@@ -24,13 +24,6 @@ struct InfoOptions {
     std::string resolution;
 };
 
-/// One name a kind of material, in the order of the variant.
-template <typename B>
-std::string_view bsdf_name() {
-    if constexpr (std::is_same_v<B, Diffuse>) return "diffuse";
-    return "other";
-}
-
 void print_shapes(const Scene& scene) {
     std::size_t meshes = 0;
     std::size_t triangles = 0;
@@ -51,7 +44,7 @@ void print_shapes(const Scene& scene) {
 void print_materials(const Scene& scene) {
     std::map<std::string, std::size_t> kinds;
     for (const Material& material : scene.materials) {
-        const std::string kind(std::visit([]<typename B>(const B&) { return bsdf_name<B>(); }, material.bsdf));
+        const std::string kind(std::visit([]<typename B>(const B&) { return B::name; }, material.bsdf));
         ++kinds[kind + (material.two_sided ? ", two-sided" : "")];
     }
     fmt::print("materials   {}\n", scene.materials.size());

@@ -82,6 +82,7 @@ Json run_json(const RunRecord& record, const Recorder& recorder, const RunState&
           {"photons_gathered", last.report.photons_gathered},
           {"paths_cut", last.paths_cut},
           {"power_cut", last.power_cut},
+          {"camera_weight_cut", hit_points.weight_cut},
           {"nonfinite_camera_paths", hit_points.nonfinite},
           {"nonfinite_photons", last.nonfinite_photons + last.report.nonfinite},
           {"nonfinite_pixels", recorder.nonfinite_pixels()}}},

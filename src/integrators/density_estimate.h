@@ -29,7 +29,7 @@ public:
     void add(const Photon& photon, double weight) {
         if (!depth_allows(max_depth_, photon.edges + point_.camera_edges)) return;
         ++count_;
-        const Color f = evaluate(*surface_.material, outgoing_, surface_.frame.to_local(photon.incoming));
+        const Color f = evaluate(surface_.bsdf, outgoing_, surface_.frame.to_local(photon.incoming));
         flux_ += ColorD(f * photon.power) * weight;
     }
 

@@ -8,7 +8,7 @@
 namespace photonlab {
 
 std::vector<Color> to_pixels(const HitPoints& hit_points, const std::vector<ColorD>& radiance, double scale) {
-    std::vector<ColorD> sums(hit_points.emission.size(), ColorD(0.0));
+    std::vector<ColorD> sums(pixel_count(hit_points), ColorD(0.0));
     for (std::size_t i = 0; i < hit_points.points.size(); ++i) {
         const HitPoint& point = hit_points.points[i];
         sums[point.pixel] += radiance[i] * ColorD(point.weight) * scale;
@@ -16,8 +16,9 @@ std::vector<Color> to_pixels(const HitPoints& hit_points, const std::vector<Colo
     return {sums.begin(), sums.end()};
 }
 
-Image make_layers(const HitPoints& hit_points, std::vector<Color> direct, std::vector<Color> gathered) {
-    std::vector<Color> emission(hit_points.emission.begin(), hit_points.emission.end());
+Image make_layers(const HitPoints& hit_points, int max_depth, std::vector<Color> direct, std::vector<Color> gathered) {
+    const std::vector<ColorD> seen = emission_image(hit_points, max_depth);
+    std::vector<Color> emission(seen.begin(), seen.end());
     return {hit_points.width,
             hit_points.height,
             {{std::string(emission_layer), std::move(emission)},
@@ -64,7 +65,7 @@ void DirectLight::run_pass(std::uint64_t pass) {
 }
 
 std::vector<Color> DirectLight::layer() const {
-    if (samples_ == 0) return std::vector<Color>(context_.hit_points.emission.size(), Color(0.0f));
+    if (samples_ == 0) return std::vector<Color>(pixel_count(context_.hit_points), Color(0.0f));
     if (passes_ > 0) return to_pixels(context_.hit_points, sums_, 1.0 / static_cast<double>(passes_));
     std::vector<ColorD> once(sums_.size(), ColorD(0.0));
     add_samples(0, once);

@@ -17,8 +17,8 @@ inline constexpr std::size_t hit_points_per_block = 256;  ///< handed to a threa
 /// of the points.
 std::vector<Color> to_pixels(const HitPoints& hit_points, const std::vector<ColorD>& radiance, double scale);
 
-/// The image of three layers; emission comes from the hit points.
-Image make_layers(const HitPoints& hit_points, std::vector<Color> direct, std::vector<Color> gathered);
+/// The image of three layers; emission comes from the hit points, as far as max_depth lets it.
+Image make_layers(const HitPoints& hit_points, int max_depth, std::vector<Color> direct, std::vector<Color> gathered);
 
 /// Smallest, mean and largest of `radii` (unit box) in scene units; leaves the report alone when there are none.
 void set_radii(IntegratorReport& report, const std::vector<double>& radii, double unit_length);

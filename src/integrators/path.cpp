@@ -9,7 +9,7 @@ namespace photonlab {
 
 namespace {
 
-constexpr std::uint32_t roulette_after = 3;  // reflections: most paths of a bright scene matter until then
+constexpr std::uint32_t roulette_after = 3;  // bounces: most paths of a bright scene matter until then
 constexpr float highest_survival = 0.99f;
 
 /// What one path found: light reflected once at the hit point, and light reflected there after other reflections.
@@ -29,13 +29,17 @@ PathSample trace_path(const Scene& scene, const HitPoint& point, int max_depth, 
         if (!depth_allows(max_depth, point.camera_edges + reflections)) break;
         ColorD& layer = reflections == 1 ? result.direct : result.gathered;
 
-        if (const auto light = connect_to_light(scene, surface, outgoing, random)) {
-            const double weight =
-                light->light_density > 0.0 ? light->light_density / (light->light_density + light->bsdf_density) : 1.0;
-            layer += ColorD(throughput) * light->contribution * weight;
+        if (!is_specular(surface.bsdf)) {
+            if (const auto light = connect_to_light(scene, surface, outgoing, random)) {
+                const double weight = light->light_density > 0.0
+                                          ? light->light_density / (light->light_density + light->bsdf_density)
+                                          : 1.0;
+                layer += ColorD(throughput) * light->contribution * weight;
+            }
         }
 
-        const auto bounce = sample(*surface.material, surface.frame.to_local(outgoing), random.next_2d());
+        const auto bounce = 
+            sample(surface.bsdf, surface.frame.to_local(outgoing), Carried::Radiance, random.next_2d());
         const float survival_draw = random.next();
         if (!bounce) break;
         const Vector direction = surface.frame.to_world(bounce->incoming);
@@ -47,10 +51,13 @@ PathSample trace_path(const Scene& scene, const HitPoint& point, int max_depth, 
         if (!hit) break;
         const ColorD emitted = emitted_radiance(scene, *hit, -direction);
         if (!is_black(emitted)) {
-            const double choice = scene.emitters[scene.shapes[hit->shape].emitter].choice_probability;
-            const double light_density = choice * direct_density(scene, surface.position, direction, *hit);
-            const double bsdf_density = bounce->density;
-            layer += ColorD(throughput) * emitted * (bsdf_density / (bsdf_density + light_density));
+            double weight = 1.0;  // of a specular direction: connecting to the light cannot find it
+            if (bounce->density > 0.0f) {
+                const double choice = scene.emitters[scene.shapes[hit->shape].emitter].choice_probability;
+                const double light_density = choice * direct_density(scene, surface.position, direction, *hit);
+                weight = bounce->density / (bounce->density + light_density);
+            }
+            layer += ColorD(throughput) * emitted * weight;
         }
 
         if (reflections >= roulette_after) {
@@ -112,7 +119,7 @@ private:
             direct[i] = sums[i].direct;
             if (with_gathered) gathered[i] = sums[i].gathered;
         }
-        return make_layers(context_.hit_points, to_pixels(context_.hit_points, direct, scale),
+        return make_layers(context_.hit_points, max_depth_, to_pixels(context_.hit_points, direct, scale),
                            to_pixels(context_.hit_points, gathered, scale));
     }
 

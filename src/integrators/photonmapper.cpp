@@ -34,7 +34,7 @@ public:
     Image estimate(const StageListener& enter) override {
         enter(Stage::Direct);
         std::vector<Color> direct = direct_.layer();
-        return make_layers(context_.hit_points, std::move(direct), gather(enter));
+        return make_layers(context_.hit_points, settings_.max_depth, std::move(direct), gather(enter));
     }
 
     IntegratorReport report() const override {

@@ -52,7 +52,7 @@ public:
         enter(Stage::Gather);
         std::vector<ColorD> radiance(statistics_.size());
         for (std::size_t i = 0; i < statistics_.size(); ++i) radiance[i] = statistics_[i].estimate;
-        return make_layers(context_.hit_points, std::move(direct),
+        return make_layers(context_.hit_points, settings_.max_depth, std::move(direct),
                            to_pixels(context_.hit_points, radiance, context_.scene.total_power));
     }
 

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/hash.h"
+#include "scene/material_reader.h"
 #include "scene/properties.h"
 #include "scene/transform.h"
 #include "scene/xml_reader.h"
@@ -34,6 +35,8 @@ public:
                 add_point_light(element);
             } else if (element.tag == "integrator") {
                 read_integrator(element);
+            } else if (element.tag == "texture") {
+                continue;  // read where a material names it
             } else if (element.tag == "sensor") {
                 if (has_sensor) {
                     note("more than one sensor: the first is used");
@@ -44,7 +47,7 @@ public:
             } else {
                 throw InputError(element.place,
                                  fmt::format("unknown element <{}> in <scene>; known here: bsdf, default, "
-                                             "emitter, include, integrator, sensor, shape",
+                                             "emitter, include, integrator, sensor, shape, texture",
                                              element.tag));
             }
         }
@@ -89,42 +92,14 @@ private:
     std::size_t material_index(const XmlElement& element) {
         const auto found = materials_.find(&element);
         if (found != materials_.end()) return found->second;
-        Material material = read_material(element);
+        Material material = read_material(
+            element, {.resolve = [this](const XmlElement& other) -> const XmlElement& { return resolve(other); },
+                      .bytes_read = bytes_read_,
+                      .note = [this](const std::string& sentence) { note(sentence); }});
         const std::string id = element.attribute("id");
         material.id = id.empty() ? element.attribute("type") : id;
         scene_.materials.push_back(std::move(material));
         return materials_[&element] = scene_.materials.size() - 1;
-    }
-
-    Material read_material(const XmlElement& element) const {
-        const std::string& type = element.require("type");
-        Properties properties(element);
-        if (type == "diffuse") {
-            for (const XmlElement* object : properties.objects())
-                throw InputError(object->place,
-                                 fmt::format("diffuse: expected reflectance as a colour, got <{}>", object->tag));
-            const ColorD reflectance = properties.reflectance("reflectance").value_or(ColorD(0.5));
-            properties.require_all_known();
-            if (std::min({reflectance.x, reflectance.y, reflectance.z}) < 0.0 || max_channel(Color(reflectance)) > 1.0f)
-                throw InputError(properties.place_of("reflectance"),
-                                 fmt::format("reflectance: expected values in [0, 1], got {} {} {}", reflectance.x,
-                                             reflectance.y, reflectance.z));
-            return {.id = {}, .bsdf = Diffuse{Color(reflectance)}, .two_sided = false};
-        }
-        if (type == "twosided") {
-            properties.require_all_known();
-            if (properties.objects().size() != 1)
-                throw InputError(element.place, fmt::format("twosided: expected one nested bsdf, got {}",
-                                                            properties.objects().size()));
-            const XmlElement& inner = resolve(*properties.objects().front());
-            if (inner.tag != "bsdf" || inner.attribute("type") == "twosided")
-                throw InputError(inner.place, fmt::format("twosided: expected a one-sided bsdf, got {} \"{}\"",
-                                                          inner.tag, inner.attribute("type")));
-            Material material = read_material(inner);
-            material.two_sided = true;
-            return material;
-        }
-        fail_unknown(element, "diffuse, twosided");
     }
 
     // -----------------------------------------------------------------------------------------------------------------

@@ -1,55 +1,55 @@
-// Materials: a BSDF as a variant of plain structs, each with evaluate, sample and density.
+// Materials: a BSDF as a variant of plain structs, and what the scene adds to it. Directions: materials/bsdf.h.
 //
-// Directions are unit, in the local frame of the shading normal (z along it), and both point away from the surface:
-// `outgoing` to where the path came from, `incoming` to where it goes on. A material is asked only for outgoing
-// directions with outgoing.z > 0; a two-sided one is turned over by its caller (orient() in scene.h).
-//
-// To add a material: a struct with these three functions in a file of its own, a line in the variant, a test.
+// To add a material: a file in materials/ with a struct that has a name and either evaluate(), sample() and density(), or, when it
+// is specular, branches(); a line in the variant here; a line in the list of material_reader.cpp; a test.
 
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
 
 #include "core/math.h"
+#include "scene/materials/conductor.h"
+#include "scene/materials/dielectric.h"
+#include "scene/materials/diffuse.h"
+#include "scene/texture.h"
 
 namespace photonlab {
 
-/// A direction drawn from a BSDF.
-struct BsdfSample {
-    Vector incoming;       ///< unit, local frame
-    Color weight;          ///< f |cos| / density: what the path's throughput is multiplied by
-    float density = 0.0f;  ///< per steradian; 0 for a specular direction, which no other technique finds
-};
-
-/// Lambert's: f = reflectance / pi above the surface, nothing below.
-struct Diffuse {
-    Color reflectance = Color(0.5f);  ///< in [0, 1] a channel
-
-    Color evaluate(const Vector& outgoing, const Vector& incoming) const;
-    std::optional<BsdfSample> sample(const Vector& outgoing, const Imath::V2f& u) const;
-    float density(const Vector& outgoing, const Vector& incoming) const;
-};
-
-using Bsdf = std::variant<Diffuse>;
+using Bsdf = std::variant<Diffuse, Conductor, Dielectric>;
 
 struct Material {
     std::string id;  ///< its id in the scene file, or its plugin's name
     Bsdf bsdf;
-    bool two_sided = false;  ///< false: black from behind, as Mitsuba's materials are
+    bool two_sided = false;                          ///< false: black from behind, unless light passes through
+    std::shared_ptr<const Texture> texture = {};     ///< takes the place of a Diffuse's reflectance
 };
 
-/// f(outgoing, incoming) without the cosine, 1/sr; 0 where either direction is below the surface.
-Color evaluate(const Material& material, const Vector& outgoing, const Vector& incoming);
+/// f(outgoing, incoming) without the cosine, 1/sr; 0 where either direction is below the surface, and for specular ones.
+Color evaluate(const Bsdf& bsdf, const Vector& outgoing, const Vector& incoming);
 
-/// A direction by (nearly) the BSDF times the cosine; empty when the path is absorbed.
-std::optional<BsdfSample> sample(const Material& material, const Vector& outgoing, const Imath::V2f& u);
+/// A direction by (nearly) the BSDF times the cosine; empty when the path is absorbed. A specular BSDF draws one of its
+/// branches.
+std::optional<BsdfSample> sample(const Bsdf& bsdf, const Vector& outgoing, Carried carried, const Imath::V2f& u);
 
-/// Density per steradian with which sample() draws `incoming`.
-float density(const Material& material, const Vector& outgoing, const Vector& incoming);
+/// Density per steradian with which sample() draws `incoming`; 0 for specular BSDFs.
+float density(const Bsdf& bsdf, const Vector& outgoing, const Vector& incoming);
+
+/// True for mirrors and glass: light goes on in single directions, nothing is gathered there and no photon stored.
+bool is_specular(const Bsdf& bsdf);
+
+/// Where specular light goes on; none for other BSDFs.
+SpecularBranches specular_branches(const Bsdf& bsdf, const Vector& outgoing, Carried carried);
+
+/// True when light passes through: the surface is then lit from both sides.
+bool is_transmissive(const Bsdf& bsdf);
 
 /// True when no light leaves the surface whatever arrives: nothing is gathered there and no photon stored.
-bool is_black(const Material& material);
+bool is_black(const Bsdf& bsdf);
+
+/// The BSDF at one point, seen from one side: textures looked up, an interface turned over when seen from its back.
+Bsdf bsdf_at(const Material& material, const Imath::V2f& texture_coordinate, bool from_back);
 
 }  // namespace photonlab

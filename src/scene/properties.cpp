@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "core/error.h"
+#include "image/read_image.h"
 #include "scene/spectrum.h"
 #include "scene/transform.h"
 
@@ -16,10 +17,6 @@ const std::set<std::string> value_tags{"float", "integer",  "boolean", "string",
 const std::set<std::string> color_tags{"float", "rgb", "spectrum", "srgb"};
 const std::set<std::string> object_tags{"bsdf", "emitter", "film",    "integrator", "medium", "phase",
                                         "ref",  "rfilter", "sampler", "sensor",     "shape",  "texture"};
-
-double srgb_to_linear(double value) {
-    return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
-}
 
 /// "#rrggbb", which is sRGB wherever it stands.
 ColorD parse_hexadecimal(const std::string& text, const std::string& place) {
@@ -104,6 +101,13 @@ std::optional<std::string> Properties::text(const std::string& name) {
     return element->require("value");
 }
 
+std::optional<std::variant<double, std::string>> Properties::number_or_text(const std::string& name) {
+    const XmlElement* element = take(name, {"float", "integer", "string"});
+    if (!element) return std::nullopt;
+    if (element->tag == "string") return element->require("value");
+    return parse_number(element->require("value"), element->place);
+}
+
 std::optional<ColorD> Properties::reflectance(const std::string& name) {
     const XmlElement* element = take(name, color_tags);
     if (!element) return std::nullopt;
@@ -112,7 +116,15 @@ std::optional<ColorD> Properties::reflectance(const std::string& name) {
     for (const double value : spectrum.values)
         if (value < 0.0 || value > 1.0)
             throw InputError(element->place, fmt::format("{}: expected values in [0, 1], got {}", name, value));
-    return reflectance_to_rgb(spectrum);
+    const ColorD rgb = reflectance_to_rgb(spectrum);
+    return ColorD(std::min(rgb.x, 1.0), std::min(rgb.y, 1.0), std::min(rgb.z, 1.0));
+}
+
+std::optional<ColorD> Properties::index_of_refraction(const std::string& name) {
+    const XmlElement* element = take(name, color_tags);
+    if (!element) return std::nullopt;
+    if (!is_by_wavelength(*element)) return parse_rgb(*element);
+    return reflectance_to_rgb(parse_spectrum(element->require("value"), element->place));
 }
 
 std::optional<ColorD> Properties::emission(const std::string& name) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/math.h"
@@ -23,11 +24,15 @@ public:
     std::optional<long> integer(const std::string& name);
     std::optional<bool> boolean(const std::string& name);
     std::optional<std::string> text(const std::string& name);
-    /// Linear RGB, from rgb, srgb, spectrum or float; what a spectrum is depends on whether it reflects or emits.
+    std::optional<std::variant<double, std::string>> number_or_text(const std::string& name);
+    /// Linear RGB, from rgb, srgb, spectrum or float; what a spectrum is depends on whether it reflects, emits or refracts.
     std::optional<ColorD> reflectance(const std::string& name);
     std::optional<ColorD> emission(const std::string& name);
+    std::optional<ColorD> index_of_refraction(const std::string& name);
     std::optional<VectorD> vector(const std::string& name);
     std::optional<Matrix> transform(const std::string& name);
+
+    bool has(const std::string& name) const { return properties_.count(name) > 0; }
 
     /// Nested plugins and references, in their order.
     const std::vector<const XmlElement*>& objects() const { return objects_; }

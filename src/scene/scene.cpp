@@ -73,15 +73,31 @@ void require_mesh(const MeshDescription& mesh, const std::string& place) {
             throw InputError(place, fmt::format("texture coordinates {} are not finite", i + 1));
 }
 
+void require_in_unit_range(const Material& material, std::string_view what, const Color& color) {
+    if (!is_finite(color) || std::min({color.x, color.y, color.z}) < 0.0f || max_channel(color) > 1.0f)
+        throw InputError(fmt::format("material \"{}\": {}: expected values in [0, 1], got {} {} {}", material.id, what,
+                                     color.x, color.y, color.z));
+}
+
+void require_material(const Material& material) {
+    if (const auto* diffuse = std::get_if<Diffuse>(&material.bsdf)) {
+        require_in_unit_range(material, "reflectance", diffuse->reflectance);
+    } else if (const auto* conductor = std::get_if<Conductor>(&material.bsdf)) {
+        require_in_unit_range(material, "reflectance", conductor->reflectance);
+        for (const Color& index : {conductor->eta, conductor->k})
+            if (!is_finite(index) || std::min({index.x, index.y, index.z}) < 0.0f)
+                throw InputError(fmt::format("material \"{}\": expected eta and k of at least 0", material.id));
+    } else if (const auto* dielectric = std::get_if<Dielectric>(&material.bsdf)) {
+        require_in_unit_range(material, "reflectance", dielectric->reflectance);
+        require_in_unit_range(material, "transmittance", dielectric->transmittance);
+        for (const float index : {dielectric->index_here, dielectric->index_beyond})
+            if (!std::isfinite(index) || !(index > 0.0f))
+                throw InputError(fmt::format("material \"{}\": expected an index above 0, got {}", material.id, index));
+    }
+}
+
 void require_valid(const SceneDescription& description) {
-    for (const Material& material : description.materials)
-        if (const auto* diffuse = std::get_if<Diffuse>(&material.bsdf)) {
-            const Color& r = diffuse->reflectance;
-            const bool valid = is_finite(r) && std::min({r.x, r.y, r.z}) >= 0.0f && std::max({r.x, r.y, r.z}) <= 1.0f;
-            if (!valid)
-                throw InputError(fmt::format("material \"{}\": reflectance: expected values in [0, 1], got {} {} {}",
-                                             material.id, r.x, r.y, r.z));
-        }
+    for (const Material& material : description.materials) require_material(material);
     for (const ShapeDescription& shape : description.shapes) {
         if (shape.material >= description.materials.size())
             throw InputError(shape.place,
@@ -364,14 +380,19 @@ bool is_occluded(const Scene& scene, const Vector& from, const Vector& to) {
 }
 
 std::optional<Surface> orient(const Scene& scene, const Hit& hit, const Vector& outgoing) {
-    const Material& material = scene.materials[scene.shapes[hit.shape].material];
+    const std::uint32_t material_index = scene.shapes[hit.shape].material;
+    const Material& material = scene.materials[material_index];
     const float geometric = hit.geometric_normal.dot(outgoing);
     const float shading = hit.shading_normal.dot(outgoing);
     if (!(geometric * shading > 0.0f)) return std::nullopt;
-    if (geometric < 0.0f && !material.two_sided) return std::nullopt;
-    if (is_black(material)) return std::nullopt;
-    const float side = std::copysign(1.0f, geometric);
-    return Surface{.material = &material,
+    const bool from_back = geometric < 0.0f;
+    if (from_back && !material.two_sided && !is_transmissive(material.bsdf)) return std::nullopt;
+    Bsdf bsdf = bsdf_at(material, hit.texture_coordinate, from_back);
+    if (is_black(bsdf)) return std::nullopt;
+    const float side = from_back ? -1.0f : 1.0f;
+    return Surface{.bsdf = std::move(bsdf),
+                   .material = material_index,
+                   .texture_coordinate = hit.texture_coordinate,
                    .frame = make_frame(hit.shading_normal * side),
                    .geometric_normal = hit.geometric_normal * side,
                    .position = hit.position};

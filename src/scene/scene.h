@@ -136,14 +136,16 @@ bool is_occluded(const Scene& scene, const Vector& from, const Vector& to);
 
 /// A surface point turned to the side that a direction came from, ready to be shaded.
 struct Surface {
-    const Material* material;
+    Bsdf bsdf;                ///< as seen from `outgoing`'s side, textures looked up
+    std::uint32_t material;   ///< index into Scene::materials
+    Imath::V2f texture_coordinate;
     Frame frame;              ///< around the shading normal, which faces `outgoing`
     Vector geometric_normal;  ///< unit, facing `outgoing` too
     Vector position;
 };
 
 /// Turns the hit to the side of `outgoing` (unit, away from the surface). Empty when nothing can be reflected there:
-/// the back of a one-sided material, a black material, or a direction on whose side shading and geometric normal
+/// the back of a one-sided opaque material, a black material, or a direction on whose side shading and geometric normal
 /// disagree.
 std::optional<Surface> orient(const Scene& scene, const Hit& hit, const Vector& outgoing);
 

@@ -126,8 +126,7 @@ Spectrum parse_spectrum(const std::string& text, const std::string& place) {
 }
 
 ColorD reflectance_to_rgb(const Spectrum& spectrum) {
-    const ColorD rgb = to_rgb(spectrum, [](const ObserverRow& row) { return row.d65; });
-    return {std::min(rgb.x, 1.0), std::min(rgb.y, 1.0), std::min(rgb.z, 1.0)};
+    return to_rgb(spectrum, [](const ObserverRow& row) { return row.d65; });
 }
 
 ColorD emission_to_rgb(const Spectrum& spectrum) {

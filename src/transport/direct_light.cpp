@@ -20,7 +20,7 @@ std::optional<ConnectedLight> connect_to_light(const Scene& scene, const Surface
 
     const Vector local_outgoing = surface.frame.to_local(outgoing);
     const Vector local_incoming = surface.frame.to_local(light->direction);
-    const Color f = evaluate(*surface.material, local_outgoing, local_incoming);
+    const Color f = evaluate(surface.bsdf, local_outgoing, local_incoming);
     if (is_black(f)) return std::nullopt;
     const Vector origin = offset_from_surface(surface.position, surface.geometric_normal, light->direction);
     if (is_occluded(scene, origin, light->position)) return std::nullopt;
@@ -30,7 +30,7 @@ std::optional<ConnectedLight> connect_to_light(const Scene& scene, const Surface
     return ConnectedLight{
         .contribution = light->radiance * ColorD(f) * (cosine / (light->density * probability)),
         .light_density = light->is_delta ? 0.0 : light->density * probability,
-        .bsdf_density = light->is_delta ? 0.0 : density(*surface.material, local_outgoing, local_incoming)};
+        .bsdf_density = light->is_delta ? 0.0 : density(surface.bsdf, local_outgoing, local_incoming)};
 }
 
 }  // namespace photonlab

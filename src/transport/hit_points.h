@@ -2,6 +2,9 @@
 // the path tracer alike, starts from these same points, so what differs between them is what they estimate there
 // and nothing else.
 //
+// Mirrors and glass are followed into all their branches, without chance, until a branch meets a surface that can be
+// gathered at, or carries too little to be seen.
+//
 // [Hachisuka et al. 2008, "Progressive Photon Mapping": the eye pass]
 
 #pragma once
@@ -24,6 +27,14 @@ struct HitPoint {
     std::uint32_t pixel;         ///< y * width + x
     std::uint16_t material;      ///< index into Scene::materials
     std::uint16_t camera_edges;  ///< edges of the path from the camera to here; 1 when seen directly
+    Imath::V2f texture_coordinate;
+};
+
+/// Light that the camera sees without a bounce at a hit point.
+struct SeenEmission {
+    std::uint32_t pixel;
+    std::uint32_t edges;  ///< of the path from the camera to the light; 1 when seen directly
+    ColorD radiance;      ///< times the path's throughput and the sample's share of the pixel
 };
 
 /// The result of the camera pass.
@@ -34,12 +45,23 @@ struct HitPoints {
     std::vector<HitPoint> points;  ///< tile by tile, so that neighbours in the list are neighbours in space
     std::vector<float>
         footprints;                ///< one a point, unit box: unfolded distance from the camera times the pixel's angle
-    std::vector<ColorD> emission;  ///< one a pixel: radiance that reaches the camera without a bounce at a hit point
-    std::uint64_t nonfinite = 0;   ///< camera paths that met a non-finite value
+    std::vector<SeenEmission> emission;
+    double weight_cut = 0.0;      ///< throughput of the branches that were ended, mean channel, mean over pixels
+    std::uint64_t nonfinite = 0;  ///< camera paths that met a non-finite value
 };
 
 /// Traces the deterministic grid of sample positions: `samples_per_pixel` is a perfect square, 1 is the pixel's centre.
 HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int threads);
+
+/// Specular branches below this throughput (strongest channel) end, and so do those of 10,000 edges.
+inline constexpr float smallest_branch_weight = 1e-4f;
+
+inline std::size_t pixel_count(const HitPoints& hit_points) {
+    return static_cast<std::size_t>(hit_points.width) * static_cast<std::size_t>(hit_points.height);
+}
+
+/// One a pixel: the emission that paths of at most max_depth edges see.
+std::vector<ColorD> emission_image(const HitPoints& hit_points, int max_depth);
 
 /// True when a path of `edges` edges from camera to light may count; max_depth -1 is unlimited.
 inline bool depth_allows(int max_depth, std::uint32_t edges) {

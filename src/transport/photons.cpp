@@ -32,6 +32,7 @@ void trace_path(const Scene& scene, const PhotonSettings& settings, std::uint64_
 
     Ray ray = emission.ray;
     Color power = emission.weight;
+    bool only_specular = true;
     // The camera's side of a path has at least one edge, so a photon may have at most max_depth - 1.
     const std::uint32_t edge_limit =
         settings.max_depth < 0 ? edge_cap : static_cast<std::uint32_t>(std::max(0, settings.max_depth - 1));
@@ -42,10 +43,16 @@ void trace_path(const Scene& scene, const PhotonSettings& settings, std::uint64_
         const std::optional<Surface> surface = orient(scene, *hit, arriving);
         if (!surface) return;
 
-        if (edges > 1 || settings.store_direct) {
+        const bool specular = is_specular(surface->bsdf);
+        if (!specular && (edges > 1 || settings.store_direct)) {
             const Vector& normal = surface->frame.normal;
             const float slant = std::abs(arriving.dot(normal) / arriving.dot(surface->geometric_normal));
-            const Photon photon{surface->position, arriving, normal, power * slant, edges};
+            const Photon photon{.position = surface->position,
+                                .incoming = arriving,
+                                .normal = normal,
+                                .power = power * slant,
+                                .edges = edges & 0x7fffffffu,
+                                .caustic = only_specular && edges > 1};
             if (is_finite(photon.position) && is_finite(photon.incoming) && is_finite(photon.power))
                 result.photons.push_back(photon);
             else
@@ -53,8 +60,9 @@ void trace_path(const Scene& scene, const PhotonSettings& settings, std::uint64_
         }
         if (edges == edge_limit) break;
 
+        only_specular = only_specular && specular;
         const std::optional<BsdfSample> bounce =
-            sample(*surface->material, surface->frame.to_local(arriving), random.next_2d());
+            sample(surface->bsdf, surface->frame.to_local(arriving), Carried::Flux, random.next_2d());
         const float survival_draw = random.next();
         if (!bounce) return;
         const float survival = std::min(max_channel(bounce->weight), highest_survival);

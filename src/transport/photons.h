@@ -21,7 +21,8 @@ struct Photon {
     Vector normal;    ///< shading normal, unit, on the side on which the photon arrived
     Color power;      ///< flux that one emitted path carries here, relative to Scene::total_power; not divided by the
                       ///< number of paths; times |incoming.normal| / |incoming.geometric normal| (Veach 1996)
-    std::uint32_t edges;  ///< edges of the path from the light to here; 1 when it came straight from the light
+    std::uint32_t edges : 31;  ///< edges of the path from the light to here; 1 when it came straight from the light
+    std::uint32_t caustic : 1 = 0;  ///< 1: it came from the light by specular surfaces alone, and by at least one
 };
 
 /// Photons of one pass, or of several passes joined.

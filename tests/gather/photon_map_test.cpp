@@ -30,7 +30,7 @@ Photon photon_at(const Vector& position, std::size_t number, const Vector& norma
             .incoming = incoming,
             .normal = normal,
             .power = Color(1.0f),
-            .edges = static_cast<std::uint32_t>(number)};
+            .edges = static_cast<std::uint32_t>(number) & 0x7fffffffu};
 }
 
 Vector random_point(RandomStream& random, float size) {

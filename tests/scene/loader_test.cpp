@@ -96,12 +96,12 @@ TEST_F(LoaderTest, EveryMistakeGetsItsMessage) {
         {"<scene>\n</scene>", "scene.xml:1: expected a <sensor type=\"perspective\"> in the scene"},
         {scene("<light/>"),
          "scene.xml:2: unknown element <light> in <scene>; known here: bsdf, default, emitter, include, "
-         "integrator, sensor, shape"},
+         "integrator, sensor, shape, texture"},
         {scene("words"), "scene.xml:1: unexpected text \"\nwords\n\" inside <scene>"},
         {scene("<shape type='teapot'/>"),
          "scene.xml:2: unknown shape \"teapot\"; known here: cube, disk, obj, rectangle, sphere"},
         {scene("<shape/>"), "scene.xml:2: <shape> needs an attribute \"type\""},
-        {scene("<bsdf type='roughglass'/>"), "scene.xml:2: unknown bsdf \"roughglass\"; known here: diffuse, twosided"},
+        {scene("<bsdf type='roughglass'/>"), "scene.xml:2: unknown bsdf \"roughglass\"; known here: conductor, dielectric, diffuse, twosided"},
         {scene("<emitter type='sky'/>"),
          "scene.xml:2: unknown emitter \"sky\"; known here: area (in a shape), point (in the scene)"},
         {scene("<bsdf type='diffuse'>\n<float name='roughness' value='1'/></bsdf>"),
@@ -137,7 +137,30 @@ TEST_F(LoaderTest, EveryMistakeGetsItsMessage) {
          "string, transform, "
          "vector, bsdf, emitter, film, integrator, medium, phase, ref, rfilter, sampler, sensor, shape, texture"},
         {scene("<bsdf type='diffuse'>\n<texture type='bitmap' name='reflectance'/></bsdf>"),
-         "scene.xml:3: diffuse: expected reflectance as a colour, got <texture>"},
+         "scene.xml:3: bitmap: expected a <string name=\"filename\">"},
+        {scene("<bsdf type='diffuse'>\n<texture type='bitmap' name='alpha'/></bsdf>"),
+         "scene.xml:3: diffuse: expected one reflectance, a colour or a texture of that name, got <texture>"},
+        {scene("<bsdf type='diffuse'>\n<texture type='marble' name='reflectance'/></bsdf>"),
+         "scene.xml:3: unknown texture \"marble\"; known here: bitmap"},
+        {scene("<bsdf type='diffuse'><texture type='bitmap' name='reflectance'>\n"
+               "<string name='filename' value='scene.xml'/><string name='wrap_mode' value='clamp'/></texture></bsdf>"),
+         "scene.xml:3: wrap_mode: only \"repeat\" is known here, got \"clamp\""},
+        {scene("<bsdf type='conductor'>\n<string name='material' value='Unobtainium'/></bsdf>"),
+         "scene.xml:3: unknown material \"Unobtainium\"; known here: none, Ag, Al, Au, Cr, Cu; or eta and k"},
+        {scene("<bsdf type='conductor'><rgb name='eta' value='0.2'/></bsdf>"),
+         "scene.xml:2: conductor: expected both eta and k, got one"},
+        {scene("<bsdf type='conductor'><rgb name='k' value='1'/>\n<rgb name='eta' value='-0.2'/></bsdf>"),
+         "scene.xml:3: eta: expected values of at least 0, got -0.2 -0.2 -0.2"},
+        {scene("<bsdf type='conductor'>\n<rgb name='specular_reflectance' value='1.1'/></bsdf>"),
+         "scene.xml:3: specular_reflectance: expected values in [0, 1], got 1.1 1.1 1.1"},
+        {scene("<bsdf type='dielectric'>\n<float name='int_ior' value='0'/></bsdf>"),
+         "scene.xml:3: int_ior: expected an index of 0.1 to 10, got 0"},
+        {scene("<bsdf type='dielectric'>\n<string name='int_ior' value='jelly'/></bsdf>"),
+         "scene.xml:3: int_ior: unknown medium \"jelly\"; known here: a number, vacuum, helium, hydrogen, air, carbon dioxide, "
+         "water, acetone, ethanol, carbon tetrachloride, glycerol, benzene, silicone oil, bromine, water ice, fused quartz, "
+         "pyrex, acrylic glass, polypropylene, bk7, sodium chloride, amber, pet, diamond"},
+        {scene("<bsdf type='twosided'>\n<bsdf type='dielectric'/></bsdf>"),
+         "scene.xml:3: twosided: expected a one-sided bsdf, got bsdf \"dielectric\""},
         {scene("<bsdf type='twosided'/>"), "scene.xml:2: twosided: expected one nested bsdf, got 0"},
         {scene("<bsdf type='twosided'>\n<bsdf type='twosided'><bsdf type='diffuse'/></bsdf></bsdf>"),
          "scene.xml:3: twosided: expected a one-sided bsdf, got bsdf \"twosided\""},
@@ -422,7 +445,7 @@ TEST_F(LoaderTest, PublicCornellBoxesOpenUnmodified) {
     EXPECT_EQ(scene.camera.width, 256);
     ASSERT_EQ(scene.shapes.size(), 2u);
     EXPECT_DOUBLE_EQ(scene.shapes[1].radiance->y, 12.0);
-    EXPECT_TRUE(is_black(scene.materials[scene.shapes[1].material]));
+    EXPECT_TRUE(is_black(scene.materials[scene.shapes[1].material].bsdf));
     expect_near(normal_of(mesh_of(scene), 0), {0, 1, 0}, 1e-6);
     expect_near(normal_of(mesh_of(scene, 1), 0), {0, -1, 0}, 1e-6);
     EXPECT_FALSE(scene.notes.empty());

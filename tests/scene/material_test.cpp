@@ -16,18 +16,18 @@ RandomStream test_stream() {
     return RandomStream(13, RandomPurpose::Test, 1, 0);
 }
 
-Material diffuse(const Color& reflectance) {
-    return {.id = "", .bsdf = Diffuse{reflectance}, .two_sided = false};
+Bsdf diffuse(const Color& reflectance) {
+    return Diffuse{reflectance};
 }
 
 const Vector outgoing(0.6f, 0.0f, 0.8f);
 
 TEST(Diffuse, SamplesByItsDensity) {
-    const Material material = diffuse(Color(0.5f));
+    const Bsdf material = diffuse(Color(0.5f));
     RandomStream random = test_stream();
     expect_distributed(
         [&] {
-            const auto drawn = sample(material, outgoing, random.next_2d());
+            const auto drawn = sample(material, outgoing, Carried::Radiance, random.next_2d());
             return std::pair<double, double>(drawn->incoming.z, std::atan2(drawn->incoming.y, drawn->incoming.x));
         },
         [&](double z, double) {
@@ -37,21 +37,21 @@ TEST(Diffuse, SamplesByItsDensity) {
 }
 
 TEST(Diffuse, StretchesSolidAngleByTheInverseOfItsDensity) {
-    const Material material = diffuse(Color(0.5f));
+    const Bsdf material = diffuse(Color(0.5f));
     const float h = 1e-3f;
     for (const Imath::V2f& u : {Imath::V2f(0.2f, 0.3f), Imath::V2f(0.7f, 0.4f), Imath::V2f(0.6f, 0.9f)}) {
-        const auto at = [&](float x, float y) { return VectorD(sample(material, outgoing, {x, y})->incoming); };
+        const auto at = [&](float x, float y) { return VectorD(sample(material, outgoing, Carried::Radiance, {x, y})->incoming); };
         const VectorD along_x = (at(u.x + h, u.y) - at(u.x - h, u.y)) / (2.0 * h);
         const VectorD along_y = (at(u.x, u.y + h) - at(u.x, u.y - h)) / (2.0 * h);
-        EXPECT_NEAR(along_x.cross(along_y).length() * sample(material, outgoing, u)->density, 1.0, 0.01);
+        EXPECT_NEAR(along_x.cross(along_y).length() * sample(material, outgoing, Carried::Radiance, u)->density, 1.0, 0.01);
     }
 }
 
 TEST(Diffuse, WeighsASampleByValueTimesCosineOverDensity) {
-    const Material material = diffuse(Color(0.3f, 0.6f, 0.9f));
+    const Bsdf material = diffuse(Color(0.3f, 0.6f, 0.9f));
     RandomStream random = test_stream();
     for (int i = 0; i < 1000; ++i) {
-        const auto drawn = sample(material, outgoing, random.next_2d());
+        const auto drawn = sample(material, outgoing, Carried::Radiance, random.next_2d());
         ASSERT_TRUE(drawn);
         const Color expected = evaluate(material, outgoing, drawn->incoming) *
                                (drawn->incoming.z / density(material, outgoing, drawn->incoming));
@@ -62,7 +62,7 @@ TEST(Diffuse, WeighsASampleByValueTimesCosineOverDensity) {
 
 TEST(Diffuse, ReflectsItsReflectanceOfUniformLight) {
     // The integral of f cos over the hemisphere, by the midpoint rule in z: f does not depend on the azimuth.
-    const Material material = diffuse(Color(0.3f, 0.6f, 0.9f));
+    const Bsdf material = diffuse(Color(0.3f, 0.6f, 0.9f));
     ColorD sum(0.0);
     for (int i = 0; i < 1000; ++i) {
         const float z = (static_cast<float>(i) + 0.5f) / 1000.0f;
@@ -74,19 +74,19 @@ TEST(Diffuse, ReflectsItsReflectanceOfUniformLight) {
 }
 
 TEST(Diffuse, IsReciprocal) {
-    const Material material = diffuse(Color(0.3f, 0.6f, 0.9f));
+    const Bsdf material = diffuse(Color(0.3f, 0.6f, 0.9f));
     const Vector incoming(0.0f, 0.28f, 0.96f);
     EXPECT_EQ(evaluate(material, outgoing, incoming), evaluate(material, incoming, outgoing));
 }
 
 TEST(Diffuse, IsBlackBelowTheSurface) {
-    const Material material = diffuse(Color(0.5f));
+    const Bsdf material = diffuse(Color(0.5f));
     const Vector below(0.6f, 0.0f, -0.8f);
     EXPECT_TRUE(is_black(evaluate(material, outgoing, below)));
     EXPECT_TRUE(is_black(evaluate(material, below, outgoing)));
     EXPECT_EQ(density(material, outgoing, below), 0.0f);
     EXPECT_EQ(density(material, below, outgoing), 0.0f);
-    EXPECT_FALSE(sample(material, below, {0.3f, 0.3f}));
+    EXPECT_FALSE(sample(material, below, Carried::Radiance, {0.3f, 0.3f}));
 }
 
 TEST(IsBlack, MeansThatEveryChannelIsZero) {

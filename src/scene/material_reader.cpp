@@ -1,0 +1,190 @@
+#include "scene/material_reader.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "scene/properties.h"
+
+namespace photonlab {
+
+namespace {
+
+/// A factor on what a surface reflects or lets through; 1 where it is not given.
+Color read_factor(Properties& properties, const std::string& name, double missing) {
+    const ColorD factor = properties.reflectance(name).value_or(ColorD(missing));
+    if (std::min({factor.x, factor.y, factor.z}) < 0.0 || std::max({factor.x, factor.y, factor.z}) > 1.0)
+        throw InputError(properties.place_of(name), fmt::format("{}: expected values in [0, 1], got {} {} {}", name,
+                                                                factor.x, factor.y, factor.z));
+    return Color(factor);
+}
+
+std::shared_ptr<const Texture> read_bitmap(const XmlElement& element, const MaterialSource& source) {
+    if (element.require("type") != "bitmap")
+        throw InputError(element.place,
+                         fmt::format("unknown texture \"{}\"; known here: bitmap", element.attribute("type")));
+    Properties properties(element);
+    const auto filename = properties.text("filename");
+    if (!filename) throw InputError(element.place, "bitmap: expected a <string name=\"filename\">");
+    const auto require_only = [&](const std::string& name, const std::string& only) {
+        const std::string value = properties.text(name).value_or(only);
+        if (value != only)
+            throw InputError(properties.place_of(name), fmt::format("{}: only \"{}\" is known here, got \"{}\"", name, only, value));
+    };
+    require_only("filter_type", "bilinear");
+    require_only("wrap_mode", "repeat");
+    const bool raw = properties.boolean("raw").value_or(false);
+    const Matrix to_uv = properties.transform("to_uv").value_or(Matrix());
+    properties.text("name");
+    properties.require_all_known();
+    if (!properties.objects().empty())
+        throw InputError(properties.objects().front()->place, "bitmap: expected no nested plugin");
+
+    const std::filesystem::path file = element.file_called(*filename);
+    source.bytes_read += read_whole_file(file, properties.place_of("filename"));
+    auto texture = std::make_shared<Texture>(Texture{read_color_image(file, raw), to_uv});
+    for (const Color& pixel : texture->image.pixels)
+        if (!is_finite(pixel) || std::min({pixel.x, pixel.y, pixel.z}) < 0.0f || max_channel(pixel) > 1.0f)
+            throw InputError(properties.place_of("filename"), fmt::format("{}: expected reflectances in [0, 1], got {} {} {}",
+                                                                          file.string(), pixel.x, pixel.y, pixel.z));
+    return texture;
+}
+
+Material read_diffuse(const XmlElement&, Properties& properties, const MaterialSource& source) {
+    Material material;
+    Diffuse diffuse;
+    for (const XmlElement* object : properties.objects()) {
+        const XmlElement& texture = source.resolve(*object);
+        if (texture.tag != "texture" || object->attribute("name") != "reflectance" || material.texture)
+            throw InputError(object->place,
+                             fmt::format("diffuse: expected one reflectance, a colour or a texture of that name, got <{}>",
+                                         object->tag));
+        material.texture = read_bitmap(texture, source);
+    }
+    if (material.texture && properties.reflectance("reflectance"))
+        throw InputError(properties.place_of("reflectance"), "diffuse: expected one reflectance, got a colour and a texture");
+    diffuse.reflectance = read_factor(properties, "reflectance", 0.5);
+    material.bsdf = diffuse;
+    return material;
+}
+
+/// Refuses what nests in a material that holds no textures.
+void require_no_objects(const Properties& properties, const std::string& type) {
+    for (const XmlElement* object : properties.objects())
+        throw InputError(object->place, fmt::format("{}: textures are known here only for the reflectance of diffuse, got <{}>",
+                                                    type, object->tag));
+}
+
+/// An index of refraction: a number, or the name of a medium.
+float read_index(Properties& properties, const std::string& name, const std::string& missing) {
+    const auto value = properties.number_or_text(name);
+    if (value && std::holds_alternative<double>(*value)) {
+        const double index = std::get<double>(*value);
+        if (!(index >= 0.1 && index <= 10.0))
+            throw InputError(properties.place_of(name), fmt::format("{}: expected an index of 0.1 to 10, got {}", name, index));
+        return static_cast<float>(index);
+    }
+    const std::string medium = value ? std::get<std::string>(*value) : missing;
+    std::vector<std::string> known;
+    for (const NamedMedium& candidate : named_media()) {
+        if (candidate.name == medium) return static_cast<float>(candidate.index);
+        known.push_back(candidate.name);
+    }
+    throw InputError(properties.place_of(name), fmt::format("{}: unknown medium \"{}\"; known here: a number, {}", name, medium,
+                                                            fmt::join(known, ", ")));
+}
+
+Material read_dielectric(const XmlElement&, Properties& properties, const MaterialSource&) {
+    require_no_objects(properties, "dielectric");
+    Material material;
+    material.bsdf = Dielectric{.index_here = read_index(properties, "ext_ior", "air"),
+                               .index_beyond = read_index(properties, "int_ior", "bk7"),
+                               .reflectance = read_factor(properties, "specular_reflectance", 1.0),
+                               .transmittance = read_factor(properties, "specular_transmittance", 1.0)};
+    return material;
+}
+
+/// A metal's index per channel, relative to the medium around it.
+Color read_metal_index(Properties& properties, const std::string& name) {
+    const ColorD index = *properties.index_of_refraction(name);
+    if (std::min({index.x, index.y, index.z}) < 0.0)
+        throw InputError(properties.place_of(name), fmt::format("{}: expected values of at least 0, got {} {} {}", name,
+                                                                index.x, index.y, index.z));
+    return Color(index);
+}
+
+Material read_conductor(const XmlElement& element, Properties& properties, const MaterialSource&) {
+    require_no_objects(properties, "conductor");
+    Conductor conductor;
+    conductor.reflectance = read_factor(properties, "specular_reflectance", 1.0);
+    const auto name = properties.text("material");
+    const bool has_eta = properties.has("eta");
+    const bool has_k = properties.has("k");
+    if (name && (has_eta || has_k))
+        throw InputError(element.place, "conductor: expected a material's name or eta and k, got both");
+    if (has_eta != has_k) throw InputError(element.place, "conductor: expected both eta and k, got one");
+    if (has_eta) {
+        conductor.eta = read_metal_index(properties, "eta");
+        conductor.k = read_metal_index(properties, "k");
+    } else {
+        const auto& known = named_conductors();
+        const std::string wanted = name.value_or("none");
+        const auto found = std::find_if(known.begin(), known.end(), [&](const auto& metal) { return metal.name == wanted; });
+        if (found == known.end()) {
+            std::vector<std::string> names;
+            for (const NamedConductor& metal : known) names.push_back(metal.name);
+            throw InputError(properties.place_of("material"), fmt::format("unknown material \"{}\"; known here: {}; or eta and k",
+                                                                          wanted, fmt::join(names, ", ")));
+        }
+        conductor.eta = found->eta;
+        conductor.k = found->k;
+    }
+    Material material;
+    material.bsdf = conductor;
+    return material;
+}
+
+Material read_two_sided(const XmlElement& element, Properties& properties, const MaterialSource& source) {
+    if (properties.objects().size() != 1)
+        throw InputError(element.place,
+                         fmt::format("twosided: expected one nested bsdf, got {}", properties.objects().size()));
+    const XmlElement& inner = source.resolve(*properties.objects().front());
+    if (inner.tag != "bsdf" || inner.attribute("type") == "twosided" || inner.attribute("type") == "dielectric")
+        throw InputError(inner.place, fmt::format("twosided: expected a one-sided bsdf, got {} \"{}\"", inner.tag,
+                                                  inner.attribute("type")));
+    Material material = read_material(inner, source);
+    material.two_sided = true;
+    return material;
+}
+
+struct MaterialKind {
+    const char* type;
+    Material (*read)(const XmlElement&, Properties&, const MaterialSource&);
+};
+
+constexpr MaterialKind material_kinds[] = {
+    {"conductor", read_conductor},
+    {"dielectric", read_dielectric},
+    {"diffuse", read_diffuse},
+    {"twosided", read_two_sided},
+};
+
+}  // namespace
+
+Material read_material(const XmlElement& element, const MaterialSource& source) {
+    const std::string& type = element.require("type");
+    std::vector<std::string> known;
+    for (const MaterialKind& kind : material_kinds) {
+        known.push_back(kind.type);
+        if (kind.type != type) continue;
+        Properties properties(element);
+        Material material = kind.read(element, properties, source);
+        properties.require_all_known();
+        return material;
+    }
+    throw InputError(element.place, fmt::format("unknown bsdf \"{}\"; known here: {}", type, fmt::join(known, ", ")));
+}
+
+}  // namespace photonlab
