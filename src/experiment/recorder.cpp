@@ -51,6 +51,20 @@ std::string max_radius(const Record& record) {
                                                              : record.state.initial_radius);
 }
 
+std::string caustic_radius(const Record& record) {
+    if (!uses(record, "caustic_radius")) return "";
+    const std::optional<double>& given = record.identity.settings.method.caustic_radius;
+    return number(given ? given : record.state.initial_radius);
+}
+
+std::string caustic_max_radius(const Record& record) {
+    if (!uses(record, "caustic_max_radius")) return "";
+    const MethodSettings& method = record.identity.settings.method;
+    if (method.caustic_max_radius) return number(method.caustic_max_radius);
+    const std::optional<double>& largest = method.max_radius ? method.max_radius : record.state.initial_radius;
+    return largest ? number(*largest * default_caustic_share) : "";
+}
+
 template <auto Member>
 std::string error_text(const Record& record) {
     return record.errors ? number((*record.errors).*Member) : "";
@@ -75,6 +89,9 @@ const std::vector<Column>& columns() {
         {"radius_rule", radius_rule},
         {"radius_initial", [](const Record& r) { return uses(r, "radius") ? number(r.state.initial_radius) : ""; }},
         {"max_radius", max_radius},
+        {"caustic_k", nullptr},
+        {"caustic_radius", caustic_radius},
+        {"caustic_max_radius", caustic_max_radius},
         {"kernel", nullptr},
         {"direct", nullptr},
         {"direct_samples", nullptr},

@@ -117,6 +117,14 @@ const std::vector<SettingField>& setting_fields() {
         field<&Settings::max_radius>("max_radius", "--max-radius",
                                      "photonmapper, mode nearest: largest radius in scene units, or auto: "
                                      "5% of the scene's bounding radius"),
+        field<&Settings::caustic_k>("caustic_k", "--caustic-k",
+                                    "photonmapper, mode nearest: photons searched in the caustic map, at least 2"),
+        field<&Settings::caustic_radius>("caustic_radius", "--caustic-radius",
+                                         "photonmapper, mode radius: radius in the caustic map in scene units, or auto: "
+                                         "as --radius"),
+        field<&Settings::caustic_max_radius>("caustic_max_radius", "--caustic-max-radius",
+                                             "photonmapper, mode nearest: largest radius in the caustic map in scene "
+                                             "units, or auto: a quarter of --max-radius"),
         field<&Settings::kernel>("kernel", "--kernel", "ppm, photonmapper: disc, cone, epanechnikov or biweight"),
         field<&Settings::direct>("direct", "--direct", "direct light from shadow rays (sampled) or from photons"),
         field<&Settings::direct_samples>("direct_samples", "--direct-samples", "shadow rays a hit point and pass"),

@@ -9,23 +9,40 @@ namespace photonlab {
 
 namespace {
 
+/// One of the two maps: its photons, and how far around each hit point it is searched.
+struct MapOfPasses {
+    std::vector<Photon> photons;  ///< of all passes, in their order
+    std::vector<double> radii;    ///< one a hit point, unit box: of the last gather; mode `radius`: fixed
+    double max_radius = 0.0;      ///< mode `nearest`, unit box
+    std::size_t k = 0;            ///< mode `nearest`
+};
+
 class PhotonMapping : public Integrator {
 public:
     PhotonMapping(const MethodSettings& settings, const IntegratorContext& context)
-        : settings_(settings), context_(context), direct_(context, settings), radii_(context.hit_points.points.size()) {
-        const double bounding_radius = context.scene.bounding_radius;
-        const double max_radius = settings.max_radius ? *settings.max_radius / context.scene.unit_length
-                                                      : default_share_of_scene * bounding_radius;
-        max_radius_ = std::max(max_radius, PhotonMap::minimum_radius);
-        for (std::size_t i = 0; i < radii_.size(); ++i)
-            radii_[i] = settings.mode == GatherMode::Radius
-                            ? initial_radius(settings, context.scene, context.hit_points, i)
-                            : max_radius_;
+        : settings_(settings), context_(context), direct_(context, settings) {
+        const double unit_length = context.scene.unit_length;
+        const auto unit_box = [&](const std::optional<double>& given, double otherwise) {
+            return std::max(given ? *given / unit_length : otherwise, PhotonMap::minimum_radius);
+        };
+        global_.k = static_cast<std::size_t>(settings.k);
+        caustic_.k = static_cast<std::size_t>(settings.caustic_k);
+        global_.max_radius = unit_box(settings.max_radius, default_share_of_scene * context.scene.bounding_radius);
+        caustic_.max_radius = unit_box(settings.caustic_max_radius, default_caustic_share * global_.max_radius);
+        const std::size_t points = context.hit_points.points.size();
+        global_.radii.assign(points, global_.max_radius);
+        caustic_.radii.assign(points, caustic_.max_radius);
+        if (settings.mode == GatherMode::Nearest) return;
+        for (std::size_t i = 0; i < points; ++i) {
+            global_.radii[i] = initial_radius(settings, context.scene, context.hit_points, i);
+            caustic_.radii[i] = unit_box(settings.caustic_radius, global_.radii[i]);
+        }
     }
 
     void run_pass(std::uint64_t pass, const PhotonPass& photons, const StageListener& enter) override {
         enter(Stage::Build);
-        photons_.insert(photons_.end(), photons.photons.begin(), photons.photons.end());
+        for (const Photon& photon : photons.photons)
+            (photon.caustic ? caustic_ : global_).photons.push_back(photon);
         paths_emitted_ += photons.paths_emitted;
         enter(Stage::Direct);
         direct_.run_pass(pass);
@@ -34,14 +51,23 @@ public:
     Image estimate(const StageListener& enter) override {
         enter(Stage::Direct);
         std::vector<Color> direct = direct_.layer();
-        return make_layers(context_.hit_points, settings_.max_depth, std::move(direct), gather(enter));
+        report_.map_bytes = 0;
+        report_.nonfinite = 0;
+        report_.photons_gathered = 0;
+        std::vector<ColorD> radiance(context_.hit_points.points.size(), ColorD(0.0));
+        gather(global_, radiance, enter);
+        gather(caustic_, radiance, enter);
+        const double paths = static_cast<double>(std::max<std::uint64_t>(1, paths_emitted_));
+        return make_layers(context_.hit_points, settings_.max_depth, std::move(direct),
+                           to_pixels(context_.hit_points, radiance, context_.scene.total_power / paths));
     }
 
+    /// Radii are those of the global map.
     IntegratorReport report() const override {
         IntegratorReport report = report_;
-        report.hit_point_bytes =
-            context_.hit_points.points.size() * sizeof(HitPoint) + radii_.size() * sizeof(double) + direct_.bytes();
-        set_radii(report, radii_, context_.scene.unit_length);
+        const std::size_t points = context_.hit_points.points.size();
+        report.hit_point_bytes = points * (sizeof(HitPoint) + 2 * sizeof(double)) + direct_.bytes();
+        set_radii(report, global_.radii, context_.scene.unit_length);
         return report;
     }
 
@@ -49,39 +75,39 @@ private:
     /// Mitsuba 0.6's default for its global map, in shares of the scene's bounding radius.
     static constexpr double default_share_of_scene = 0.05;
 
-    std::vector<Color> gather(const StageListener& enter) {
+    /// Adds what the photons of one map bring to every hit point.
+    void gather(MapOfPasses& source, std::vector<ColorD>& radiance, const StageListener& enter) {
+        if (source.photons.empty()) return;
         enter(Stage::Build);
-        const PhotonMap map(photons_);
-        report_.map_bytes = photons_.capacity() * sizeof(Photon) + map.bytes();
-        report_.nonfinite = map.nonfinite();
+        const PhotonMap map(source.photons);
+        report_.map_bytes += source.photons.capacity() * sizeof(Photon) + map.bytes();
+        report_.nonfinite += map.nonfinite();
 
         enter(Stage::Gather);
         const std::vector<HitPoint>& points = context_.hit_points.points;
-        std::vector<ColorD> radiance(points.size(), ColorD(0.0));
         const std::size_t blocks = block_count(points.size(), hit_points_per_block);
         std::vector<std::uint64_t> gathered(blocks, 0);
         parallel_for(blocks, context_.threads, [&](std::size_t block) {
             const BlockRange range = block_range(block, points.size(), hit_points_per_block);
             for (std::size_t i = range.begin; i < range.end; ++i) {
+                double& radius = source.radii[i];
                 const FluxSum sum = settings_.mode == GatherMode::Radius
-                                        ? gather_within(map, context_.scene, points[i], radii_[i], settings_.kernel,
+                                        ? gather_within(map, context_.scene, points[i], radius, settings_.kernel,
                                                         settings_.max_depth)
-                                        : gather_nearest(map, points[i], radii_[i]);
-                radiance[i] = sum.flux() / (pi * radii_[i] * radii_[i]);
+                                        : gather_nearest(map, points[i], source, radius);
+                radiance[i] += sum.flux() / (pi * radius * radius);
                 gathered[block] += sum.count();
             }
         });
-        report_.photons_gathered = 0;
         for (const std::uint64_t count : gathered) report_.photons_gathered += count;
-        const double paths = static_cast<double>(std::max<std::uint64_t>(1, paths_emitted_));
-        return to_pixels(context_.hit_points, radiance, context_.scene.total_power / paths);
     }
 
     /// The k nearest; `radius` becomes that of the disc to divide by.
-    FluxSum gather_nearest(const PhotonMap& map, const HitPoint& point, double& radius) const {
+    FluxSum gather_nearest(const PhotonMap& map, const HitPoint& point, const MapOfPasses& source,
+                           double& radius) const {
         FluxSum sum(context_.scene, point, settings_.max_depth);
         const NearestPhotons nearest = map.nearest(
-            point.position, point.normal, static_cast<std::size_t>(settings_.k), max_radius_,
+            point.position, point.normal, source.k, source.max_radius,
             [&](const Photon& photon, double squared_distance, double squared_radius) {
                 sum.add(photon, kernel_weight(settings_.kernel, std::min(1.0, squared_distance / squared_radius)));
             });
@@ -92,9 +118,8 @@ private:
     const MethodSettings settings_;
     const IntegratorContext context_;
     DirectLight direct_;
-    std::vector<double> radii_;  // one a hit point, unit box: of the last gather; mode `radius`: fixed
-    double max_radius_ = 0.0;
-    std::vector<Photon> photons_;  // of all passes, in their order
+    MapOfPasses global_;
+    MapOfPasses caustic_;  // light that came by mirrors and glass alone; apart, since it is so much denser
     std::uint64_t paths_emitted_ = 0;
     IntegratorReport report_;
 };

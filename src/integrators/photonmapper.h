@@ -1,5 +1,6 @@
-// Photon mapping, directly visualised: all photons of all passes so far in one map, gathered at the hit points without
-// final gathering. The baseline whose bias progressive photon mapping removes.
+// Photon mapping, directly visualised: all photons of all passes so far, gathered at the hit points without final
+// gathering. The baseline whose bias progressive photon mapping removes. Caustic photons, which came from the light by
+// mirrors and glass alone, have a map and settings of their own.
 //
 // Mode `radius` averages over a fixed disc: with more photons its variance vanishes and its bias stays. Mode `nearest`
 // averages over the k nearest photons: with more photons the disc and with it the bias shrink, and the variance stays

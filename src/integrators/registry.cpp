@@ -13,7 +13,8 @@ const std::vector<IntegratorKind>& integrator_kinds() {
         {"path", false, {"max_depth"}, make_path},
         {"photonmapper",
          true,
-         {"mode", "k", "radius", "max_radius", "kernel", "direct", "direct_samples", "max_depth", "photons_per_pass"},
+         {"mode", "k", "radius", "max_radius", "caustic_k", "caustic_radius", "caustic_max_radius", "kernel", "direct",
+          "direct_samples", "max_depth", "photons_per_pass"},
          make_photonmapper},
         {"ppm",
          true,
@@ -37,8 +38,9 @@ bool uses_setting(const MethodSettings& settings, std::string_view field) {
     const auto& used = find_integrator_kind(settings.integrator).settings;
     if (std::find(used.begin(), used.end(), field) == used.end()) return false;
     const bool photonmapper = settings.integrator == "photonmapper";
-    if (field == "k" || field == "max_radius") return settings.mode == GatherMode::Nearest;
-    if (field == "radius" && photonmapper) return settings.mode == GatherMode::Radius;
+    if (field == "k" || field == "max_radius" || field == "caustic_k" || field == "caustic_max_radius")
+        return settings.mode == GatherMode::Nearest;
+    if ((field == "radius" && photonmapper) || field == "caustic_radius") return settings.mode == GatherMode::Radius;
     if (field == "direct_samples") return settings.direct == DirectMode::Sampled;
     return true;
 }
@@ -55,6 +57,12 @@ void require_valid(const MethodSettings& settings) {
     require(settings.k >= 2, "k: expected at least 2 photons, got " + std::to_string(settings.k));
     require(is_length(settings.radius), "radius: expected \"auto\" or a length above 0 in scene units");
     require(is_length(settings.max_radius), "max_radius: expected \"auto\" or a length above 0 in scene units");
+    require(settings.caustic_k >= 2,
+            "caustic_k: expected at least 2 photons, got " + std::to_string(settings.caustic_k));
+    require(is_length(settings.caustic_radius),
+            "caustic_radius: expected \"auto\" or a length above 0 in scene units");
+    require(is_length(settings.caustic_max_radius),
+            "caustic_max_radius: expected \"auto\" or a length above 0 in scene units");
     require(settings.direct_samples >= 1,
             "direct_samples: expected at least 1, got " + std::to_string(settings.direct_samples));
     require(settings.max_depth == -1 || settings.max_depth >= 1,

@@ -37,6 +37,9 @@ constexpr const auto& choice_names(DirectMode) {
     return direct_mode_names;
 }
 
+/// Largest radius of the caustic map in shares of the global map's, unless given: the ratio of Mitsuba 0.6's defaults.
+inline constexpr double default_caustic_share = 0.25;
+
 struct MethodSettings {
     std::string integrator = "ppm";                   ///< a name of integrator_kinds()
     GatherMode mode = GatherMode::Radius;             ///< photonmapper
@@ -47,6 +50,11 @@ struct MethodSettings {
                                                       ///< scene units, > 0; empty: three times the pixel's footprint
     std::optional<double> max_radius = std::nullopt;  ///< photonmapper, nearest: scene units, > 0; empty: 5% of the
                                                       ///< scene's bounding radius
+    int caustic_k = 120;                              ///< photonmapper, nearest: the same of the caustic map, >= 2
+    std::optional<double> caustic_radius = std::nullopt;      ///< photonmapper, radius: of the caustic map, scene units,
+                                                              ///< > 0; empty: as `radius`
+    std::optional<double> caustic_max_radius = std::nullopt;  ///< photonmapper, nearest: of the caustic map, scene units,
+                                                              ///< > 0; empty: a quarter of max_radius
     Kernel kernel = Kernel::Disc;                     ///< ppm, photonmapper
     DirectMode direct = DirectMode::Sampled;          ///< ppm, photonmapper
     int direct_samples = 1;                           ///< shadow rays a hit point and pass, >= 1

@@ -28,7 +28,8 @@ std::string cell(const Record& record, const std::string& column) {
 TEST(Records, ColumnsAreThoseOfTheContract) {
     EXPECT_EQ(
         csv_header(),
-        "schema,experiment,run,scene,integrator,mode,schedule,alpha,k,radius_rule,radius_initial,max_radius,kernel,"
+        "schema,experiment,run,scene,integrator,mode,schedule,alpha,k,radius_rule,radius_initial,max_radius,caustic_k,"
+        "caustic_radius,caustic_max_radius,kernel,"
         "direct,direct_samples,max_depth,photons_per_pass,width,height,samples_per_pixel,hit_points,seed,threads,"
         "pass,component,"
         "paths_emitted,photons_stored,photons_gathered,seconds,cpu_seconds,seconds_trace,seconds_build,seconds_gather,"
@@ -42,7 +43,8 @@ TEST(Records, WhatDoesNotApplyIsEmpty) {
     RunState state;
     const Record path{identity, state, "total", std::nullopt, 0, 1.0};
     for (const char* column :
-         {"mode", "schedule", "alpha", "k", "radius_rule", "radius_initial", "max_radius", "kernel", "direct",
+         {"mode", "schedule", "alpha", "k", "radius_rule", "radius_initial", "max_radius", "caustic_k",
+          "caustic_radius", "caustic_max_radius", "kernel", "direct",
           "direct_samples", "photons_per_pass", "paths_emitted", "photons_stored", "photons_gathered", "map_bytes",
           "radius_mean", "mse", "mse_unbiased", "reference_floor"})
         EXPECT_EQ(cell(path, column), "") << column;
@@ -57,6 +59,9 @@ TEST(Records, WhatDoesNotApplyIsEmpty) {
         EXPECT_EQ(cell(nearest, column), "") << column;
     EXPECT_EQ(cell(nearest, "k"), "120");
     EXPECT_EQ(cell(nearest, "max_radius"), "0.25");
+    EXPECT_EQ(cell(nearest, "caustic_k"), "120");
+    EXPECT_EQ(cell(nearest, "caustic_radius"), "");
+    EXPECT_EQ(cell(nearest, "caustic_max_radius"), "0.0625");
     EXPECT_EQ(cell(nearest, "paths_emitted"), "0");
 }
 
