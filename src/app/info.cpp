@@ -44,7 +44,7 @@ void print_shapes(const Scene& scene) {
 void print_materials(const Scene& scene) {
     std::map<std::string, std::size_t> kinds;
     for (const Material& material : scene.materials) {
-        const std::string kind(std::visit([]<typename B>(const B&) { return B::name; }, material.bsdf));
+        const std::string kind(material_kind(material));
         ++kinds[kind + (material.two_sided ? ", two-sided" : "")];
     }
     fmt::print("materials   {}\n", scene.materials.size());

@@ -1,4 +1,4 @@
-// photonlab reference: adds path traced samples to the two halves of a reference.
+// photonlab reference: adds samples to the two halves of a reference.
 
 #include <fmt/format.h>
 
@@ -50,10 +50,15 @@ void add_reference_command(CLI::App& app) {
     auto options = std::make_shared<ReferenceOptions>();
     ReferenceSettings& settings = options->settings;
     settings.threads = hardware_threads();
-    CLI::App* command = app.add_subcommand("reference", "Add path traced samples to a reference of two halves");
+    CLI::App* command = app.add_subcommand("reference", "Add samples to a reference of two halves");
     command->add_option("SCENE", settings.scene_file, "scene file (Mitsuba XML)")->required();
     command->add_option("-o", options->output, "folder of the reference")->required();
-    command->add_option("--samples", settings.samples, "paths to add, a sample position and half [1024]")
+    command->add_option("--integrator", settings.integrator,
+                        "path, or ppm where paths from the camera do not find the light [path]");
+    command->add_option("--photons", settings.photons_per_pass, "ppm: paths emitted a pass [1000000]");
+    command->add_option("--alpha", settings.alpha, "ppm: of the schedule of Knaus and Zwicker [2/3]");
+    command->add_option("--samples", settings.samples,
+                        "to add to each half: paths a sample position, or passes of ppm [1024]")
         ->check(CLI::Range(1u, 0x7fffffffu));
     command->add_option("--resolution", options->resolution, "WIDTHxHEIGHT in place of the scene file's");
     command->add_option("--samples-per-pixel", settings.samples_per_pixel, "sample positions, a perfect square [1]");

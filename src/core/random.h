@@ -22,6 +22,10 @@ enum class RandomPurpose : std::uint8_t {
     ReferenceHalfA = 4,
     ReferenceHalfB = 5,
     Test = 6,
+    ReferencePhotonsA = 7,
+    ReferencePhotonsB = 8,
+    ReferenceDirectA = 9,
+    ReferenceDirectB = 10,
 };
 
 class RandomStream {

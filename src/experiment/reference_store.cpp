@@ -21,6 +21,41 @@ constexpr std::string_view halves[] = {"half_a", "half_b"};
 constexpr std::string_view key_attribute = "photonlab.key";
 constexpr std::string_view seed_attribute = "photonlab.seed";
 constexpr std::string_view samples_attribute = "photonlab.samples";
+constexpr std::string_view method_attribute = "photonlab.method";
+
+constexpr double ppm_radius_scale = 0.5;
+
+/// The random streams of one half.
+struct HalfPurposes {
+    std::string_view name;
+    RandomPurpose paths;
+    RandomPurpose photons;
+    RandomPurpose direct;
+};
+
+constexpr HalfPurposes half_purposes[] = {
+    {halves[0], RandomPurpose::ReferenceHalfA, RandomPurpose::ReferencePhotonsA, RandomPurpose::ReferenceDirectA},
+    {halves[1], RandomPurpose::ReferenceHalfB, RandomPurpose::ReferencePhotonsB, RandomPurpose::ReferenceDirectB}};
+
+/// How the samples are made, in words that tell whether others can be joined to them.
+std::string describe_method(const MethodSettings& method) {
+    if (method.integrator == "path") return "path";
+    return fmt::format("ppm, knaus-zwicker, alpha {}, half the automatic radius, {} photons a pass", method.alpha,
+                       method.photons_per_pass);
+}
+
+MethodSettings method_of(const ReferenceSettings& settings) {
+    if (settings.integrator != "path" && settings.integrator != "ppm")
+        throw InputError(fmt::format("integrator: expected path or ppm for a reference, got \"{}\"", settings.integrator));
+    MethodSettings method;
+    method.integrator = settings.integrator;
+    method.schedule = ScheduleName::KnausZwicker;
+    method.alpha = settings.alpha;
+    method.photons_per_pass = settings.photons_per_pass;
+    method.max_depth = settings.max_depth;
+    require_valid(method);
+    return method;
+}
 
 std::filesystem::path half_file(const std::filesystem::path& folder, std::string_view half) {
     return folder / (std::string(half) + ".exr");
@@ -40,9 +75,19 @@ std::uint64_t read_number(const std::filesystem::path& file, const Metadata& met
 /// One half while samples are added: what was there, and an integrator that makes what is new.
 class GrowingHalf {
 public:
-    GrowingHalf(std::filesystem::path file, const std::string& key, std::uint64_t seed, const MethodSettings& settings,
-                const IntegratorContext& context)
-        : file_(std::move(file)), key_(key), seed_(seed), integrator_(make_integrator(settings, context)) {
+    GrowingHalf(std::filesystem::path file, const std::string& key, const MethodSettings& method,
+                const IntegratorContext& context, RandomPurpose photon_purpose)
+        : file_(std::move(file)),
+          key_(key),
+          seed_(context.seed),
+          method_(method),
+          scene_(context.scene),
+          threads_(context.threads),
+          photon_settings_{.paths = method.photons_per_pass,
+                           .seed = context.seed,
+                           .max_depth = method.max_depth,
+                           .purpose = photon_purpose},
+          integrator_(make_integrator(method, context)) {
         if (!std::filesystem::exists(file_)) return;
         Metadata metadata;
         stored_ = read_exr(file_, &metadata);
@@ -55,6 +100,11 @@ public:
         if (stored_seed != seed_)
             throw InputError(file_.string(), fmt::format("was made with seed {}; it cannot be continued with seed {}",
                                                          stored_seed, seed_));
+        const std::string stored_method =
+            metadata.count(std::string(method_attribute)) ? metadata[std::string(method_attribute)] : "path";
+        if (stored_method != describe_method(method_))
+            throw InputError(file_.string(), fmt::format("was made with {}; it cannot be continued with {}",
+                                                         stored_method, describe_method(method_)));
         stored_samples_ = read_number(file_, metadata, samples_attribute);
     }
 
@@ -62,7 +112,10 @@ public:
 
     void add_sample() {
         ++new_samples_;
-        integrator_->run_pass(stored_samples_ + new_samples_, PhotonPass{}, [](Stage) {});
+        PhotonPass photons;
+        if (find_integrator_kind(method_.integrator).needs_photons)
+            photons = trace_photons(scene_, photon_settings_, samples(), threads_);
+        integrator_->run_pass(samples(), photons, [](Stage) {});
     }
 
     /// Mean over old and new samples, in double until it is stored.
@@ -84,6 +137,7 @@ public:
         write_exr(file_, image,
                   {{std::string(key_attribute), key_},
                    {std::string(seed_attribute), std::to_string(seed_)},
+                   {std::string(method_attribute), describe_method(method_)},
                    {std::string(samples_attribute), std::to_string(samples())}});
         return hash_file(file_);
     }
@@ -92,6 +146,10 @@ private:
     const std::filesystem::path file_;
     const std::string key_;
     const std::uint64_t seed_;
+    const MethodSettings method_;
+    const Scene& scene_;
+    const int threads_;
+    const PhotonSettings photon_settings_;
     std::unique_ptr<Integrator> integrator_;
     Image stored_;
     std::uint64_t stored_samples_ = 0;
@@ -123,21 +181,26 @@ Json add_reference_samples(const Scene& scene, const ReferenceSettings& settings
     const ReferenceSubject subject{scene.hash, scene.camera.width, scene.camera.height, settings.samples_per_pixel,
                                    settings.max_depth};
     const std::string key = reference_key(subject);
-    MethodSettings method;
-    method.integrator = "path";
-    method.max_depth = settings.max_depth;
-    require_valid(method);
+    const MethodSettings method = method_of(settings);
+    const bool is_unbiased = method.integrator == "path";
     require_writable(folder / "reference.json");
     const double seconds_before = stored_seconds(folder);
 
     const HitPoints hit_points = trace_hit_points(scene, settings.samples_per_pixel, settings.threads);
     const auto began = std::chrono::steady_clock::now();
-    const auto half = [&](std::string_view name, RandomPurpose purpose) {
-        return GrowingHalf(half_file(folder, name), key, settings.seed, method,
-                           IntegratorContext{scene, hit_points, settings.seed, settings.threads, purpose});
+    const auto half = [&](const HalfPurposes& purposes) {
+        return GrowingHalf(half_file(folder, purposes.name), key, method,
+                           IntegratorContext{.scene = scene,
+                                             .hit_points = hit_points,
+                                             .seed = settings.seed,
+                                             .threads = settings.threads,
+                                             .path_purpose = purposes.paths,
+                                             .direct_purpose = purposes.direct,
+                                             .auto_radius_scale = ppm_radius_scale},
+                           purposes.photons);
     };
-    GrowingHalf half_a = half(halves[0], RandomPurpose::ReferenceHalfA);
-    GrowingHalf half_b = half(halves[1], RandomPurpose::ReferenceHalfB);
+    GrowingHalf half_a = half(half_purposes[0]);
+    GrowingHalf half_b = half(half_purposes[1]);
 
     Json json;
     const auto save = [&] {
@@ -151,6 +214,8 @@ Json add_reference_samples(const Scene& scene, const ReferenceSettings& settings
                     {"key", key},
                     {"reference_version", reference_version},
                     {"integrator", method.integrator},
+                    {"method", describe_method(method)},
+                    {"estimate", is_unbiased ? "unbiased" : "consistent, not unbiased"},
                     {"scene", {{"name", scene.name}, {"file", settings.scene_file.string()}, {"hash", scene.hash}}},
                     {"width", subject.width},
                     {"height", subject.height},

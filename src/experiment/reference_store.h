@@ -1,5 +1,7 @@
-// References in a folder: two halves, path traced with random streams of their own, that grow by as many samples as
-// somebody cares to add.
+// References in a folder: two halves, made with random streams of their own, that grow by as many samples as somebody
+// cares to add. They are path traced, and unbiased. Where path tracing would take days or finds nothing (caustics of
+// small lights, seen through glass), they are made by ppm instead, with the schedule of Knaus and Zwicker, whose passes
+// can be joined, and half the automatic initial radius: consistent, not unbiased, and reference.json says so.
 //
 //     half_a.exr, half_b.exr    mean over the half's samples, as layers; how many and of what is in their metadata
 //     reference.json            how it was made, its key, its noise floor, and the halves' checksums
@@ -26,7 +28,10 @@ namespace photonlab {
 
 struct ReferenceSettings {
     std::filesystem::path scene_file;
-    std::uint64_t samples = 1024;  ///< to add, a sample position and half
+    std::string integrator = "path";            ///< or "ppm"
+    std::uint64_t samples = 1024;               ///< to add to each half: paths a sample position (path), passes (ppm)
+    std::uint64_t photons_per_pass = 1'000'000;  ///< ppm
+    double alpha = 2.0 / 3.0;                   ///< ppm
     int samples_per_pixel = 1;     ///< sample positions, a perfect square
     int max_depth = -1;
     std::uint64_t seed = 1;  ///< must be the one that is there already, when adding

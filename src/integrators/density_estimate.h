@@ -10,7 +10,7 @@
 #include "core/math.h"
 #include "gather/kernel.h"
 #include "gather/photon_map.h"
-#include "integrators/settings.h"
+#include "integrators/integrator.h"
 #include "scene/scene.h"
 #include "transport/hit_points.h"
 
@@ -57,9 +57,9 @@ inline FluxSum gather_within(const PhotonMap& map, const Scene& scene, const Hit
 }
 
 /// Initial gather radius of a hit point, unit box: the setting (scene units), or three times the pixel's footprint.
-inline double initial_radius(const MethodSettings& settings, const Scene& scene, const HitPoints& hit_points,
-                             std::size_t index) {
-    const double radius = settings.radius ? *settings.radius / scene.unit_length : 3.0 * hit_points.footprints[index];
+inline double initial_radius(const MethodSettings& settings, const IntegratorContext& context, std::size_t index) {
+    const double radius = settings.radius ? *settings.radius / context.scene.unit_length
+                                          : 3.0 * context.hit_points.footprints[index] * context.auto_radius_scale;
     return std::max(radius, PhotonMap::minimum_radius);
 }
 

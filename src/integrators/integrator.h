@@ -40,14 +40,18 @@ struct IntegratorContext {
     const HitPoints& hit_points;
     std::uint64_t seed = 1;
     int threads = 1;
-    RandomPurpose path_purpose = RandomPurpose::CameraPaths;  ///< `path` only: a reference's half has its own
+    RandomPurpose path_purpose = RandomPurpose::CameraPaths;    ///< of `path`; a reference's half has its own
+    RandomPurpose direct_purpose = RandomPurpose::DirectLight;  ///< of direct light at hit points; likewise
+    double auto_radius_scale = 1.0;                             ///< on automatic radii; a reference takes smaller ones
 };
 
 class Integrator {
 public:
     virtual ~Integrator() = default;
 
-    /// Takes pass `pass`, counted from 1 and called in order, with the photons of that pass (none for `path`).
+    /// Takes pass `pass`, counted from 1 and called in order, with the photons of that pass (none for `path`). Methods
+    /// whose passes do not depend on each other (`path`, `ppm` with the schedule of Knaus and Zwicker) may begin at any
+    /// pass: their images are means over the passes they took, and can be joined.
     virtual void run_pass(std::uint64_t pass, const PhotonPass& photons, const StageListener& enter) = 0;
 
     /// The image after the passes so far, layers "emission", "direct" and "gathered". After no pass at all: emission,

@@ -48,7 +48,7 @@ void DirectLight::add_samples(std::uint64_t pass, std::vector<ColorD>& sums) con
         const BlockRange range = block_range(block, points.size(), hit_points_per_block);
         for (std::size_t i = range.begin; i < range.end; ++i) {
             if (!depth_allows(max_depth_, points[i].camera_edges + 1u)) continue;
-            RandomStream random(context_.seed, RandomPurpose::DirectLight, pass, i);
+            RandomStream random(context_.seed, context_.direct_purpose, pass, i);
             const Surface surface = surface_at(context_.scene, points[i]);
             ColorD sum(0.0);
             for (int sample = 0; sample < samples_; ++sample)

@@ -1,5 +1,6 @@
 #include "integrators/path.h"
 
+#include "core/error.h"
 #include "core/parallel.h"
 #include "integrators/layers.h"
 #include "scene/emitter.h"
@@ -73,10 +74,29 @@ PathSample trace_path(const Scene& scene, const HitPoint& point, int max_depth, 
     return result;
 }
 
+/// Light of a point that reaches a diffuse surface by a mirror or through glass is found by photons alone: a path from
+/// the camera would have to hit the point.
+void require_findable_light(const Scene& scene, int max_depth) {
+    const bool has_point_light = std::any_of(scene.emitters.begin(), scene.emitters.end(), [](const Emitter& emitter) {
+        return std::holds_alternative<PointLight>(emitter.kind);
+    });
+    if (!has_point_light || !depth_allows(max_depth, 3)) return;
+    for (const Shape& shape : scene.shapes) {
+        const Material& material = scene.materials[shape.material];
+        if (is_specular(material.bsdf))
+            throw InputError(scene.name, "cannot be path traced: it has a point light and a " +
+                                             std::string(material_kind(material)) + " (\"" + material.id +
+                                             "\"), and no path from the camera can find a point by a mirror or through "
+                                             "glass, so all its caustics would be missing; use ppm, also for a reference");
+    }
+}
+
 class PathTracing : public Integrator {
 public:
     PathTracing(const MethodSettings& settings, const IntegratorContext& context)
-        : max_depth_(settings.max_depth), context_(context), sums_(context.hit_points.points.size()) {}
+        : max_depth_(settings.max_depth), context_(context), sums_(context.hit_points.points.size()) {
+        require_findable_light(context.scene, max_depth_);
+    }
 
     void run_pass(std::uint64_t pass, const PhotonPass&, const StageListener& enter) override {
         enter(Stage::Trace);

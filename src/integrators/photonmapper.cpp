@@ -34,7 +34,7 @@ public:
         caustic_.radii.assign(points, caustic_.max_radius);
         if (settings.mode == GatherMode::Nearest) return;
         for (std::size_t i = 0; i < points; ++i) {
-            global_.radii[i] = initial_radius(settings, context.scene, context.hit_points, i);
+            global_.radii[i] = initial_radius(settings, context, i);
             caustic_.radii[i] = unit_box(settings.caustic_radius, global_.radii[i]);
         }
     }

@@ -1,5 +1,7 @@
 #include "integrators/ppm.h"
 
+#include <cassert>
+
 #include "core/parallel.h"
 #include "gather/photon_map.h"
 #include "gather/radius_schedule.h"
@@ -20,12 +22,14 @@ public:
           direct_(context, settings),
           statistics_(context.hit_points.points.size()) {
         for (std::size_t i = 0; i < statistics_.size(); ++i) {
-            const double radius = initial_radius(settings, context.scene, context.hit_points, i);
+            const double radius = initial_radius(settings, context, i);
             statistics_[i].squared_radius = radius * radius;
         }
     }
 
     void run_pass(std::uint64_t pass, const PhotonPass& photons, const StageListener& enter) override {
+        if (passes_ == 0) begin_at(pass);
+        ++passes_;
         enter(Stage::Build);
         const PhotonMap map(photons.photons);
         report_.map_bytes = std::max(report_.map_bytes, map.bytes());
@@ -67,6 +71,15 @@ public:
     }
 
 private:
+    /// Shrinks the radii as the passes before `pass` would have. Only a schedule that depends on the pass alone can.
+    void begin_at(std::uint64_t pass) {
+        assert(pass == 1 || settings_.schedule == ScheduleName::KnausZwicker);
+        double shrink = 1.0;
+        for (std::uint64_t before = 1; before < pass; ++before) shrink *= knaus_zwicker_shrink(settings_.alpha, before);
+        for (GatherStatistics& statistics : statistics_)
+            statistics.squared_radius = std::max(statistics.squared_radius * shrink, smallest_squared_radius);
+    }
+
     /// One pass at one hit point; returns the number of photons found.
     std::uint64_t update(const HitPoint& point, const PhotonMap& map, std::uint64_t paths, std::uint64_t pass,
                          GatherStatistics& statistics) const {
@@ -74,7 +87,7 @@ private:
                                           settings_.kernel, settings_.max_depth);
         const double area = pi * statistics.squared_radius;
         const ColorD estimate = sum.flux() / (area * static_cast<double>(paths));
-        statistics.estimate += (estimate - statistics.estimate) / static_cast<double>(pass);
+        statistics.estimate += (estimate - statistics.estimate) / static_cast<double>(passes_);
 
         const double found = static_cast<double>(sum.count());
         if (settings_.schedule == ScheduleName::Hachisuka) {
@@ -91,6 +104,7 @@ private:
     const MethodSettings settings_;
     const IntegratorContext context_;
     DirectLight direct_;
+    std::uint64_t passes_ = 0;                  // taken so far, from whichever pass they began at
     std::vector<GatherStatistics> statistics_;  // joined with the hit points by index
     IntegratorReport report_;
 };

@@ -54,6 +54,10 @@ float density(const Bsdf& bsdf, const Vector& outgoing, const Vector& incoming) 
         bsdf);
 }
 
+const char* material_kind(const Material& material) {
+    return std::visit([]<typename B>(const B&) { return B::name; }, material.bsdf);
+}
+
 bool is_specular(const Bsdf& bsdf) {
     return std::visit([]<typename B>(const B&) { return Specular<B>; }, bsdf);
 }

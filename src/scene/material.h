@@ -37,6 +37,9 @@ std::optional<BsdfSample> sample(const Bsdf& bsdf, const Vector& outgoing, Carri
 /// Density per steradian with which sample() draws `incoming`; 0 for specular BSDFs.
 float density(const Bsdf& bsdf, const Vector& outgoing, const Vector& incoming);
 
+/// The kind of BSDF, as scene files call it.
+const char* material_kind(const Material& material);
+
 /// True for mirrors and glass: light goes on in single directions, nothing is gathered there and no photon stored.
 bool is_specular(const Bsdf& bsdf);
 

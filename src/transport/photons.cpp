@@ -23,7 +23,7 @@ float adjoint_correction(const Surface& surface, const Vector& arriving, const V
 
 void trace_path(const Scene& scene, const PhotonSettings& settings, std::uint64_t pass, std::uint64_t index,
                 PhotonPass& result) {
-    RandomStream random(settings.seed, RandomPurpose::PhotonPaths, pass, index);
+    RandomStream random(settings.seed, settings.purpose, pass, index);
     const std::uint32_t emitter = choose_emitter(scene, random.next_double());
     const Imath::V2f u_position = random.next_2d();
     const double u_triangle = random.next_double();

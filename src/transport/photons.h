@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/math.h"
+#include "core/random.h"
 #include "scene/scene.h"
 
 namespace photonlab {
@@ -39,6 +40,7 @@ struct PhotonSettings {
     std::uint64_t seed = 1;
     int max_depth = -1;         ///< edges from camera to light, as in Mitsuba; a photon's own edges stay below it
     bool store_direct = false;  ///< also store photons that came straight from the light
+    RandomPurpose purpose = RandomPurpose::PhotonPaths;  ///< a reference's half has its own
 };
 
 /// Traces pass `pass` (counted from 1). A scene without light gives no photons and still counts its paths.
