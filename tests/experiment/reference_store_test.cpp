@@ -86,6 +86,46 @@ TEST_F(ReferenceStore, AddsNothingToAReferenceOfSomethingElseOrOfAnotherSeed) {
               std::string::npos);
 }
 
+TEST_F(ReferenceStore, MadeByPpmItResumesAndSaysThatItIsBiased) {
+    const auto by_ppm = [&](std::uint64_t samples) {
+        ReferenceSettings chosen = settings(samples);
+        chosen.integrator = "ppm";
+        chosen.photons_per_pass = 300;
+        return chosen;
+    };
+    const Json whole_json = add_reference_samples(scene_, by_ppm(12), folder_ / "whole");
+    EXPECT_EQ(whole_json.at("estimate"), "consistent, not unbiased");
+    EXPECT_EQ(whole_json.at("method"),
+              "ppm, knaus-zwicker, alpha 0.6666666666666666, half the automatic radius, 300 photons a pass");
+    add_reference_samples(scene_, by_ppm(5), folder_ / "parts");
+    add_reference_samples(scene_, by_ppm(7), folder_ / "parts");
+    const Reference whole = load_reference(folder_ / "whole", subject());
+    const Reference parts = load_reference(folder_ / "parts", subject());
+    expect_near(parts.half_a, whole.half_a);
+    expect_near(parts.half_b, whole.half_b);
+    EXPECT_FALSE(*whole.half_a.find(gathered_layer) == *whole.half_b.find(gathered_layer));
+    EXPECT_FALSE(*whole.half_a.find(direct_layer) == *whole.half_b.find(direct_layer));
+    EXPECT_NE(message_of([&] {
+                  add_reference_samples(scene_, settings(1), folder_ / "whole");
+              }).find("was made with ppm, knaus-zwicker"),
+              std::string::npos);
+}
+
+TEST_F(ReferenceStore, LightThatNoPathFindsIsRefused) {
+    std::string text = two_walls_scene;
+    text.replace(text.find("</scene>"), 8,
+                 "<emitter type='point'/><shape type='sphere'><bsdf type='dielectric' id='glass'/></shape></scene>");
+    const Scene scene = build_scene(load_scene_file(folder_.write("glass.xml", text)));
+    ReferenceSettings by_path = settings(1);
+    EXPECT_NE(message_of([&] {
+                  add_reference_samples(scene, by_path, folder_ / "reference");
+              }).find("cannot be path traced: it has a point light and a dielectric (\"glass\")"),
+              std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "reference/half_a.exr"));
+    by_path.max_depth = 2;  // no path of two edges meets a caustic
+    EXPECT_EQ(add_reference_samples(scene, by_path, folder_ / "shallow").at("estimate"), "unbiased");
+}
+
 TEST_F(ReferenceStore, AnInterruptedSaveIsNoticedAndRepaired) {
     add_reference_samples(scene_, settings(4), folder_ / "whole");
     add_reference_samples(scene_, settings(3), folder_ / "longer");
