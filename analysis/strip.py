@@ -179,13 +179,6 @@ def draw_strip(title, entries, reference, floor, exposure):
     return figure
 
 
-def positive(text):
-    value = float(text)
-    if not value > 0:
-        raise ValueError(text)
-    return value
-
-
 def main(arguments):
     parser = argparse.ArgumentParser(
         description=__doc__.split("\n\n")[0], formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -196,12 +189,12 @@ def main(arguments):
     parser.add_argument("--pass", type=int, metavar="N",
                         help="pass to show (default: the last one that all methods have)")
     parser.add_argument("--seed", type=int, metavar="S", help="seed to show (default: each method's lowest)")
-    parser.add_argument("--alpha", type=positive, nargs="+", default=[], metavar="A",
+    parser.add_argument("--alpha", type=style.positive, nargs="+", default=[], metavar="A",
                         help="alphas of PPM to show (default: the lowest)")
     parser.add_argument("--all", action="store_true", help="show every method, not the first one of each kind")
     parser.add_argument("--component", choices=records.COMPONENTS, default="total",
                         help="what to show (default: total)")
-    parser.add_argument("--exposure", type=positive, metavar="E",
+    parser.add_argument("--exposure", type=style.positive, metavar="E",
                         help="factor on radiance in the pictures (default: 97%% of the lit pixels are below white)")
     options = parser.parse_args(arguments)
     results = options.results

@@ -118,6 +118,14 @@ def panels_over_legend(rows, columns, handles, caption, panel_height=1.75):
     return figure, grid
 
 
+def positive(text):
+    """A number above 0 from the command line."""
+    value = float(text)
+    if not value > 0:
+        raise ValueError(text)
+    return value
+
+
 def two_digits(value):
     """0.0020, 0.13, 12: what a comparison by eye needs of an error."""
     return f"{value:#.2g}".rstrip(".")

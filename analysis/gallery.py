@@ -1,0 +1,139 @@
+"""Draws what methods make of scenes as passes go by: a column a recorded pass, two rows a scene (PPM above, PM at the same
+photons below), the reference at the right, and under each picture its RMSE and the seconds that it took.
+
+Pass 0 is emission and direct light alone, before the first photon. The RMSE is free of the reference's noise where the
+reference has two halves; the seconds are those of the passes, as in the records.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+try:
+    import pictures
+    import records
+    import style
+except ImportError as error:
+    print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas, matplotlib and OpenImageIO (on "
+          "Debian: /usr/bin/python3 with python3-pandas, python3-matplotlib and python3-openimageio)", file=sys.stderr)
+    sys.exit(2)
+
+ROW_ORDER = ["ppm", "photonmapper", "path"]    # the progressive method above its baseline
+CELL = 1.5              # inches
+GAP = 0.05
+TEXT = 0.2              # under each picture
+LEFT, TOP, SCENE_GAP = 0.32, 0.3, 0.12
+
+
+def caption(rows):
+    """ "RMSE 0.012, 3.4 s" of one recorded pass."""
+    parts = []
+    if not rows["mse"].isna().all():
+        value = rows[records.error_column(rows)].iloc[0]
+        parts.append(f"RMSE {style.two_digits(records.root(value))}" if value > 0 else "below resolution")
+    parts.append(f"{style.two_digits(rows['seconds'].iloc[0])} s")
+    return ", ".join(parts)
+
+
+def methods_of(scene_rows, labels):
+    """Labels of a scene's methods, PPM first."""
+    first_rows = scene_rows.drop_duplicates("method").set_index("method")
+    own = [label for label in labels if label in first_rows.index]
+    return sorted(own, key=lambda label: ROW_ORDER.index(first_rows.loc[label]["integrator"]))
+
+
+def collect(results, scene, rows, labels):
+    """[(label, {pass: (image, caption)})] of a scene's lowest seeds, and its reference or None."""
+    found, reference = [], None
+    for label in methods_of(rows, labels):
+        of_method = rows[rows["method"] == label]
+        of_run = of_method[of_method["seed"] == of_method["seed"].min()]
+        run = of_run["run"].iloc[0]
+        record = records.read_run(results, run)
+        total = of_run[of_run["component"] == "total"]
+        images = {}
+        for snapshot in record["snapshots"]:
+            file = results / "runs" / run / snapshot["file"]
+            of_pass = total[total["pass"] == snapshot["pass"]]
+            if file.is_file() and not of_pass.empty:
+                images[snapshot["pass"]] = (pictures.read_component(file, "total"), caption(of_pass))
+        if images:
+            found.append((label, images))
+        else:
+            print(f"{scene}: {label}: no snapshots, so not in the gallery")
+        if reference is None:
+            reference = pictures.read_reference(records.reference_files(results, record), "total", False)
+    return found, reference
+
+
+def draw(scenes, exposure):
+    """The figure of [(scene, methods, reference)]."""
+    style.use()
+    style.pyplot.rcParams["axes.grid"] = False
+    passes = sorted({number for _, methods, _ in scenes for _, images in methods for number in images})
+    has_reference = any(reference is not None for *_, reference in scenes)
+    columns = len(passes) + has_reference
+    width = LEFT + columns * (CELL + GAP)
+    rows = sum(len(methods) for _, methods, _ in scenes)
+    height = TOP + rows * (CELL + TEXT) + len(scenes) * SCENE_GAP
+    figure = style.pyplot.figure(figsize=(width, height))
+
+    def add_picture(image, x, y, scale):
+        axes = figure.add_axes([x / width, 1 - (y + CELL) / height, CELL / width, CELL / height])
+        axes.imshow(pictures.to_srgb(image, scale))
+        axes.set(xticks=[], yticks=[])
+        axes.spines[:].set_visible(True)
+        return axes
+
+    for column, name in enumerate([f"pass {number}" for number in passes] + ["reference"] * has_reference):
+        figure.text((LEFT + column * (CELL + GAP) + CELL / 2) / width, 1 - 0.2 / height, name, ha="center", fontsize=9)
+    y = TOP
+    for scene, methods, reference in scenes:
+        scale = exposure or pictures.exposure_for(
+            list(methods[0][1].values())[-1][0] if reference is None else reference)
+        for row, (label, images) in enumerate(methods):
+            figure.text(0.24 / width, 1 - (y + CELL / 2) / height, f"{scene}\n{label}", rotation=90, ha="right",
+                        va="center", fontsize=7.5, linespacing=1.1)
+            for column, number in enumerate(passes):
+                if number not in images:
+                    continue
+                image, text = images[number]
+                axes = add_picture(image, LEFT + column * (CELL + GAP), y, scale)
+                axes.set_xlabel(text, fontsize=7, labelpad=2)
+            if reference is not None and row == 0:
+                add_picture(reference, LEFT + len(passes) * (CELL + GAP), y, scale)
+            y += CELL + TEXT
+        y += SCENE_GAP
+    return figure
+
+
+def main(arguments):
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
+                                     formatter_class=argparse.RawDescriptionHelpFormatter,
+                                     epilog="Writes RESULTS_DIR/figures/gallery.png and .pdf.\n\n" +
+                                     __doc__.split("\n\n", 1)[1])
+    parser.add_argument("results", metavar="RESULTS_DIR", type=Path,
+                        help="folder of an experiment's results: iterations.csv and runs/ are in it")
+    parser.add_argument("--exposure", type=style.positive, metavar="E",
+                        help="factor on radiance (default: for each scene, 97%% of the lit pixels are below white)")
+    options = parser.parse_args(arguments)
+    try:
+        rows = records.read_records(options.results)
+        labels = records.methods_in_order(rows)
+        scenes = []
+        for scene, scene_rows in rows.groupby("scene", sort=False):
+            methods, reference = collect(options.results, scene, scene_rows, labels)
+            if methods:
+                scenes.append((scene, methods, reference))
+        if not scenes:
+            raise records.RecordError(f"{options.results}: no snapshots; expected some in the experiment file")
+        for file in style.save(draw(scenes, options.exposure), options.results, "gallery"):
+            print(file)
+    except (records.RecordError, OSError) as error:
+        print(error, file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
