@@ -37,7 +37,6 @@ std::shared_ptr<const Texture> read_bitmap(const XmlElement& element, const Mate
     require_only("wrap_mode", "repeat");
     const bool raw = properties.boolean("raw").value_or(false);
     const Matrix to_uv = properties.transform("to_uv").value_or(Matrix());
-    properties.text("name");
     properties.require_all_known();
     if (!properties.objects().empty())
         throw InputError(properties.objects().front()->place, "bitmap: expected no nested plugin");
