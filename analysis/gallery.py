@@ -42,9 +42,15 @@ def methods_of(scene_rows, labels):
     return sorted(own, key=lambda label: ROW_ORDER.index(first_rows.loc[label]["integrator"]))
 
 
+def lit_by_scene(files):
+    """A reference with the lights themselves blacked out: what the exposure is chosen for. None without one."""
+    total, emission = (pictures.read_reference(files, component, False) for component in ["total", "emission"])
+    return total if emission is None else total * (emission.max(axis=2, keepdims=True) <= 0)
+
+
 def collect(results, scene, rows, labels):
-    """[(label, {pass: (image, caption)})] of a scene's lowest seeds, and its reference or None."""
-    found, reference = [], None
+    """[(label, {pass: (image, caption)})] of a scene's lowest seeds, its reference or None, and the exposure for it."""
+    found, reference, exposure = [], None, None
     for label in methods_of(rows, labels):
         of_method = rows[rows["method"] == label]
         of_run = of_method[of_method["seed"] == of_method["seed"].min()]
@@ -62,19 +68,24 @@ def collect(results, scene, rows, labels):
         else:
             print(f"{scene}: {label}: no snapshots, so not in the gallery")
         if reference is None:
-            reference = pictures.read_reference(records.reference_files(results, record), "total", False)
-    return found, reference
+            files = records.reference_files(results, record)
+            reference = pictures.read_reference(files, "total", False)
+            if reference is not None:
+                exposure = pictures.exposure_for(lit_by_scene(files))
+    if found and exposure is None:
+        exposure = pictures.exposure_for(list(found[0][1].values())[-1][0])
+    return found, reference, exposure
 
 
-def draw(scenes, exposure):
-    """The figure of [(scene, methods, reference)]."""
+def draw(scenes, given_exposure):
+    """The figure of [(scene, methods, reference, exposure)]."""
     style.use()
     style.pyplot.rcParams["axes.grid"] = False
-    passes = sorted({number for _, methods, _ in scenes for _, images in methods for number in images})
-    has_reference = any(reference is not None for *_, reference in scenes)
+    passes = sorted({number for _, methods, *_ in scenes for _, images in methods for number in images})
+    has_reference = any(reference is not None for _, _, reference, _ in scenes)
     columns = len(passes) + has_reference
     width = LEFT + columns * (CELL + GAP)
-    rows = sum(len(methods) for _, methods, _ in scenes)
+    rows = sum(len(methods) for _, methods, *_ in scenes)
     height = TOP + rows * (CELL + TEXT) + len(scenes) * SCENE_GAP
     figure = style.pyplot.figure(figsize=(width, height))
 
@@ -88,9 +99,8 @@ def draw(scenes, exposure):
     for column, name in enumerate([f"pass {number}" for number in passes] + ["reference"] * has_reference):
         figure.text((LEFT + column * (CELL + GAP) + CELL / 2) / width, 1 - 0.2 / height, name, ha="center", fontsize=9)
     y = TOP
-    for scene, methods, reference in scenes:
-        scale = exposure or pictures.exposure_for(
-            list(methods[0][1].values())[-1][0] if reference is None else reference)
+    for scene, methods, reference, exposure in scenes:
+        scale = given_exposure or exposure
         for row, (label, images) in enumerate(methods):
             figure.text(0.24 / width, 1 - (y + CELL / 2) / height, f"{scene}\n{label}", rotation=90, ha="right",
                         va="center", fontsize=7.5, linespacing=1.1)
@@ -115,16 +125,16 @@ def main(arguments):
     parser.add_argument("results", metavar="RESULTS_DIR", type=Path,
                         help="folder of an experiment's results: iterations.csv and runs/ are in it")
     parser.add_argument("--exposure", type=style.positive, metavar="E",
-                        help="factor on radiance (default: for each scene, 97%% of the lit pixels are below white)")
+                        help="factor on radiance (default: for each scene, 97%% of what its lights light is below white)")
     options = parser.parse_args(arguments)
     try:
         rows = records.read_records(options.results)
         labels = records.methods_in_order(rows)
         scenes = []
         for scene, scene_rows in rows.groupby("scene", sort=False):
-            methods, reference = collect(options.results, scene, scene_rows, labels)
+            methods, reference, exposure = collect(options.results, scene, scene_rows, labels)
             if methods:
-                scenes.append((scene, methods, reference))
+                scenes.append((scene, methods, reference, exposure))
         if not scenes:
             raise records.RecordError(f"{options.results}: no snapshots; expected some in the experiment file")
         for file in style.save(draw(scenes, options.exposure), options.results, "gallery"):

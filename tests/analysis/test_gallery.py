@@ -39,14 +39,14 @@ class Gallery(unittest.TestCase):
 
     def test_ppm_stands_above_pm_at_every_recorded_pass(self):
         self.make_results([0, 1, 64])
-        methods, reference = self.collected()
+        methods, reference, _ = self.collected()
         self.assertEqual([label for label, _ in methods], ["PPM", "PM, radius"])
         self.assertEqual([list(images) for _, images in methods], [[0, 1, 64]] * 2)
         self.assertIsNone(reference)
 
     def test_captions_are_the_records(self):
         self.make_results([1])
-        methods, _ = self.collected()
+        methods, *_ = self.collected()
         self.assertEqual([images[1][1] for _, images in methods], ["RMSE 0.010, 0.26 s", "RMSE 0.020, 0.26 s"])
 
     def test_figures_are_written_with_and_without_a_reference(self):
