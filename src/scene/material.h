@@ -1,7 +1,7 @@
 // Materials: a BSDF as a variant of plain structs, and what the scene adds to it. Directions: materials/bsdf.h.
 //
-// To add a material: a file in materials/ with a struct that has a name and either evaluate(), sample() and density(), or, when it
-// is specular, branches(); a line in the variant here; a line in the list of material_reader.cpp; a test.
+// To add a material: a file in materials/ with a struct that has a name and either evaluate(), sample() and density(),
+// or, when it is specular, branches(); a line in the variant here; a line in the list of material_reader.cpp; a test.
 
 #pragma once
 
@@ -14,20 +14,23 @@
 #include "scene/materials/conductor.h"
 #include "scene/materials/dielectric.h"
 #include "scene/materials/diffuse.h"
+#include "scene/materials/merl.h"
 #include "scene/texture.h"
 
 namespace photonlab {
 
-using Bsdf = std::variant<Diffuse, Conductor, Dielectric>;
+using Bsdf = std::variant<Diffuse, Conductor, Dielectric, Merl>;
 
 struct Material {
     std::string id;  ///< its id in the scene file, or its plugin's name
     Bsdf bsdf;
-    bool two_sided = false;                          ///< false: black from behind, unless light passes through
-    std::shared_ptr<const Texture> texture = {};     ///< takes the place of a Diffuse's reflectance
+    bool two_sided = false;                       ///< false: black from behind, unless light passes through
+    std::shared_ptr<const Texture> texture = {};  ///< takes the place of a Diffuse's reflectance
+    std::shared_ptr<const MerlTable> table = {};  ///< what a Merl looks up
 };
 
-/// f(outgoing, incoming) without the cosine, 1/sr; 0 where either direction is below the surface, and for specular ones.
+/// f(outgoing, incoming) without the cosine, 1/sr; 0 where either direction is below the surface, and for specular
+/// ones.
 Color evaluate(const Bsdf& bsdf, const Vector& outgoing, const Vector& incoming);
 
 /// A direction by (nearly) the BSDF times the cosine; empty when the path is absorbed. A specular BSDF draws one of its

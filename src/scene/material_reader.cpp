@@ -31,7 +31,8 @@ std::shared_ptr<const Texture> read_bitmap(const XmlElement& element, const Mate
     const auto require_only = [&](const std::string& name, const std::string& only) {
         const std::string value = properties.text(name).value_or(only);
         if (value != only)
-            throw InputError(properties.place_of(name), fmt::format("{}: only \"{}\" is known here, got \"{}\"", name, only, value));
+            throw InputError(properties.place_of(name),
+                             fmt::format("{}: only \"{}\" is known here, got \"{}\"", name, only, value));
     };
     require_only("filter_type", "bilinear");
     require_only("wrap_mode", "repeat");
@@ -46,8 +47,9 @@ std::shared_ptr<const Texture> read_bitmap(const XmlElement& element, const Mate
     auto texture = std::make_shared<Texture>(Texture{read_color_image(file, raw), to_uv});
     for (const Color& pixel : texture->image.pixels)
         if (!is_finite(pixel) || std::min({pixel.x, pixel.y, pixel.z}) < 0.0f || max_channel(pixel) > 1.0f)
-            throw InputError(properties.place_of("filename"), fmt::format("{}: expected reflectances in [0, 1], got {} {} {}",
-                                                                          file.string(), pixel.x, pixel.y, pixel.z));
+            throw InputError(properties.place_of("filename"),
+                             fmt::format("{}: expected reflectances in [0, 1], got {} {} {}", file.string(), pixel.x,
+                                         pixel.y, pixel.z));
     return texture;
 }
 
@@ -57,13 +59,15 @@ Material read_diffuse(const XmlElement&, Properties& properties, const MaterialS
     for (const XmlElement* object : properties.objects()) {
         const XmlElement& texture = source.resolve(*object);
         if (texture.tag != "texture" || object->attribute("name") != "reflectance" || material.texture)
-            throw InputError(object->place,
-                             fmt::format("diffuse: expected one reflectance, a colour or a texture of that name, got <{}>",
-                                         object->tag));
+            throw InputError(
+                object->place,
+                fmt::format("diffuse: expected one reflectance, a colour or a texture of that name, got <{}>",
+                            object->tag));
         material.texture = read_bitmap(texture, source);
     }
     if (material.texture && properties.reflectance("reflectance"))
-        throw InputError(properties.place_of("reflectance"), "diffuse: expected one reflectance, got a colour and a texture");
+        throw InputError(properties.place_of("reflectance"),
+                         "diffuse: expected one reflectance, got a colour and a texture");
     diffuse.reflectance = read_factor(properties, "reflectance", 0.5);
     material.bsdf = diffuse;
     return material;
@@ -72,8 +76,9 @@ Material read_diffuse(const XmlElement&, Properties& properties, const MaterialS
 /// Refuses what nests in a material that holds no textures.
 void require_no_objects(const Properties& properties, const std::string& type) {
     for (const XmlElement* object : properties.objects())
-        throw InputError(object->place, fmt::format("{}: textures are known here only for the reflectance of diffuse, got <{}>",
-                                                    type, object->tag));
+        throw InputError(object->place,
+                         fmt::format("{}: textures are known here only for the reflectance of diffuse, got <{}>", type,
+                                     object->tag));
 }
 
 /// An index of refraction: a number, or the name of a medium.
@@ -82,7 +87,8 @@ float read_index(Properties& properties, const std::string& name, const std::str
     if (value && std::holds_alternative<double>(*value)) {
         const double index = std::get<double>(*value);
         if (!(index >= 0.1 && index <= 10.0))
-            throw InputError(properties.place_of(name), fmt::format("{}: expected an index of 0.1 to 10, got {}", name, index));
+            throw InputError(properties.place_of(name),
+                             fmt::format("{}: expected an index of 0.1 to 10, got {}", name, index));
         return static_cast<float>(index);
     }
     const std::string medium = value ? std::get<std::string>(*value) : missing;
@@ -91,8 +97,8 @@ float read_index(Properties& properties, const std::string& name, const std::str
         if (candidate.name == medium) return static_cast<float>(candidate.index);
         known.push_back(candidate.name);
     }
-    throw InputError(properties.place_of(name), fmt::format("{}: unknown medium \"{}\"; known here: a number, {}", name, medium,
-                                                            fmt::join(known, ", ")));
+    throw InputError(properties.place_of(name), fmt::format("{}: unknown medium \"{}\"; known here: a number, {}", name,
+                                                            medium, fmt::join(known, ", ")));
 }
 
 Material read_dielectric(const XmlElement&, Properties& properties, const MaterialSource&) {
@@ -130,18 +136,50 @@ Material read_conductor(const XmlElement& element, Properties& properties, const
     } else {
         const auto& known = named_conductors();
         const std::string wanted = name.value_or("none");
-        const auto found = std::find_if(known.begin(), known.end(), [&](const auto& metal) { return metal.name == wanted; });
+        const auto found =
+            std::find_if(known.begin(), known.end(), [&](const auto& metal) { return metal.name == wanted; });
         if (found == known.end()) {
             std::vector<std::string> names;
             for (const NamedConductor& metal : known) names.push_back(metal.name);
-            throw InputError(properties.place_of("material"), fmt::format("unknown material \"{}\"; known here: {}; or eta and k",
-                                                                          wanted, fmt::join(names, ", ")));
+            throw InputError(
+                properties.place_of("material"),
+                fmt::format("unknown material \"{}\"; known here: {}; or eta and k", wanted, fmt::join(names, ", ")));
         }
         conductor.eta = found->eta;
         conductor.k = found->k;
     }
     Material material;
     material.bsdf = conductor;
+    return material;
+}
+
+/// Measured data often reflects more than it gets at grazing angles. It is rendered as it is, and that is said.
+void note_energy_above_one(const MerlTable& table, const std::string& file, const MaterialSource& source) {
+    constexpr double quadrature_error = 0.005;
+    const MerlTable::Albedo* brightest = nullptr;
+    double most = 1.0 + quadrature_error;
+    for (const MerlTable::Albedo& at : table.albedos) {
+        const double strongest = std::max({at.albedo.x, at.albedo.y, at.albedo.z});
+        if (!(strongest > most)) continue;
+        brightest = &at;
+        most = strongest;
+    }
+    if (brightest)
+        source.note(
+            fmt::format("merl \"{}\": reflects more light than it gets: {:.3f} times as much at {:g} degrees from "
+                        "the normal",
+                        file, most, brightest->degrees));
+}
+
+Material read_merl(const XmlElement& element, Properties& properties, const MaterialSource& source) {
+    require_no_objects(properties, "merl");
+    const auto filename = properties.text("filename");
+    if (!filename) throw InputError(element.place, "merl: expected a <string name=\"filename\">");
+    Material material;
+    material.table =
+        load_merl_table(element.file_called(*filename), properties.place_of("filename"), source.bytes_read);
+    material.bsdf = Merl{material.table.get()};
+    note_energy_above_one(*material.table, *filename, source);
     return material;
 }
 
@@ -164,10 +202,8 @@ struct MaterialKind {
 };
 
 constexpr MaterialKind material_kinds[] = {
-    {"conductor", read_conductor},
-    {"dielectric", read_dielectric},
-    {"diffuse", read_diffuse},
-    {"twosided", read_two_sided},
+    {"conductor", read_conductor}, {"dielectric", read_dielectric}, {"diffuse", read_diffuse},
+    {"merl", read_merl},           {"twosided", read_two_sided},
 };
 
 }  // namespace

@@ -93,6 +93,9 @@ void require_material(const Material& material) {
         for (const float index : {dielectric->index_here, dielectric->index_beyond})
             if (!std::isfinite(index) || !(index > 0.0f))
                 throw InputError(fmt::format("material \"{}\": expected an index above 0, got {}", material.id, index));
+    } else if (const auto* merl = std::get_if<Merl>(&material.bsdf)) {
+        if (!merl->table || merl->table != material.table.get())
+            throw InputError(fmt::format("material \"{}\": expected its own table", material.id));
     }
 }
 

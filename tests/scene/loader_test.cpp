@@ -101,7 +101,8 @@ TEST_F(LoaderTest, EveryMistakeGetsItsMessage) {
         {scene("<shape type='teapot'/>"),
          "scene.xml:2: unknown shape \"teapot\"; known here: cube, disk, obj, rectangle, sphere"},
         {scene("<shape/>"), "scene.xml:2: <shape> needs an attribute \"type\""},
-        {scene("<bsdf type='roughglass'/>"), "scene.xml:2: unknown bsdf \"roughglass\"; known here: conductor, dielectric, diffuse, twosided"},
+        {scene("<bsdf type='roughglass'/>"),
+         "scene.xml:2: unknown bsdf \"roughglass\"; known here: conductor, dielectric, diffuse, merl, twosided"},
         {scene("<emitter type='sky'/>"),
          "scene.xml:2: unknown emitter \"sky\"; known here: area (in a shape), point (in the scene)"},
         {scene("<bsdf type='diffuse'>\n<float name='roughness' value='1'/></bsdf>"),
@@ -156,8 +157,10 @@ TEST_F(LoaderTest, EveryMistakeGetsItsMessage) {
         {scene("<bsdf type='dielectric'>\n<float name='int_ior' value='0'/></bsdf>"),
          "scene.xml:3: int_ior: expected an index of 0.1 to 10, got 0"},
         {scene("<bsdf type='dielectric'>\n<string name='int_ior' value='jelly'/></bsdf>"),
-         "scene.xml:3: int_ior: unknown medium \"jelly\"; known here: a number, vacuum, helium, hydrogen, air, carbon dioxide, "
-         "water, acetone, ethanol, carbon tetrachloride, glycerol, benzene, silicone oil, bromine, water ice, fused quartz, "
+         "scene.xml:3: int_ior: unknown medium \"jelly\"; known here: a number, vacuum, helium, hydrogen, air, carbon "
+         "dioxide, "
+         "water, acetone, ethanol, carbon tetrachloride, glycerol, benzene, silicone oil, bromine, water ice, fused "
+         "quartz, "
          "pyrex, acrylic glass, polypropylene, bk7, sodium chloride, amber, pet, diamond"},
         {scene("<bsdf type='twosided'>\n<bsdf type='dielectric'/></bsdf>"),
          "scene.xml:3: twosided: expected a one-sided bsdf, got bsdf \"dielectric\""},

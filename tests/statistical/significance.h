@@ -60,10 +60,13 @@ public:
     ClaimFamily(const ClaimFamily&) = delete;
     ClaimFamily& operator=(const ClaimFamily&) = delete;
 
-    /// The expectation of the independent `values` is `expected`, seen with at most `largest_error` (relative).
-    void mean_is(const std::string& what, const std::vector<double>& values, double expected, double largest_error) {
+    /// The expectation of the independent `values` is `expected`, but for a difference of at most `bias`, seen with at
+    /// most `largest_error` (both relative).
+    void mean_is(const std::string& what, const std::vector<double>& values, double expected, double largest_error,
+                 double bias = 0.0) {
         const SampleMean sample(values);
-        add(what, sample.mean, expected, std::sqrt(sample.squared_error), sample.degrees_of_freedom, largest_error);
+        add(what, sample.mean, expected, std::sqrt(sample.squared_error), sample.degrees_of_freedom, largest_error,
+            bias);
     }
 
     /// Like mean_is() for each value's difference from an expectation of its own; errors are relative to their mean.

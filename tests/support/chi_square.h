@@ -19,22 +19,22 @@ inline double chi_square_tail(double statistic, double degrees) {
     return 0.5 * std::erfc(z / std::sqrt(2.0));
 }
 
-/// Integral of `density` over [x0, x1] x [y0, y1] by the midpoint rule, 16 x 16.
+/// Integral of `density` over [x0, x1] x [y0, y1] by the midpoint rule, steps x steps.
 inline double cell_integral(const std::function<double(double, double)>& density, double x0, double x1, double y0,
-                            double y1) {
-    constexpr int steps = 16;
+                            double y1, int steps) {
     double sum = 0.0;
     for (int i = 0; i < steps; ++i)
         for (int j = 0; j < steps; ++j)
             sum += density(x0 + (x1 - x0) * (i + 0.5) / steps, y0 + (y1 - y0) * (j + 0.5) / steps);
-    return sum * (x1 - x0) * (y1 - y0) / (steps * steps);
+    return sum * (x1 - x0) * (y1 - y0) / (static_cast<double>(steps) * steps);
 }
 
 /// Expects that `samples` of `draw` (each in [x_min, x_max] x [y_min, y_max]) follow `density`, which integrates to one
-/// there. Fails by chance with probability 1e-4 (the seed is fixed, so it fails always or never).
+/// there. Fails by chance with probability 1e-4 (the seed is fixed, so it fails always or never). A density with steps
+/// or narrow peaks needs more `steps` a cell.
 inline void expect_distributed(const std::function<std::pair<double, double>()>& draw,
                                const std::function<double(double, double)>& density, double x_min, double x_max,
-                               double y_min, double y_max, int samples = 200'000) {
+                               double y_min, double y_max, int samples = 200'000, int steps = 16) {
     constexpr int cells = 12;
     std::vector<double> counts(cells * cells, 0.0);
     for (int i = 0; i < samples; ++i) {
@@ -54,7 +54,7 @@ inline void expect_distributed(const std::function<std::pair<double, double>()>&
             const double width = (x_max - x_min) / cells;
             const double height = (y_max - y_min) / cells;
             const double share = cell_integral(density, x_min + column * width, x_min + (column + 1) * width,
-                                               y_min + row * height, y_min + (row + 1) * height);
+                                               y_min + row * height, y_min + (row + 1) * height, steps);
             total += share;
             const double expected = share * samples;
             const double count = counts[static_cast<std::size_t>(row * cells + column)];
