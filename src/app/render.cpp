@@ -111,9 +111,9 @@ void render(const RenderOptions& options) {
     std::vector<std::filesystem::path> written;
     std::optional<ErrorMetrics> errors;
     RunState shown;
-    run_method(
-        scene, hit_points, settings,
-        [&](const RunState& state, const Image& image) {
+    run_methods(
+        scene, hit_points, {settings},
+        [&](std::size_t, const RunState& state, const Image& image) {
             const auto is_in = [&](const std::vector<std::uint64_t>& passes) {
                 return std::binary_search(passes.begin(), passes.end(), state.pass);
             };

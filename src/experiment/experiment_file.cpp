@@ -65,9 +65,10 @@ public:
             throw InputError(fmt::format("{}:{}", experiment_.file.string(), error.source().begin.line),
                              std::string(error.description()));
         }
-        std::vector<std::string_view> known{
-            "title",  "scenes", "method", "seeds", "passes", "record", "snapshots", "resolution", "samples_per_pixel",
-            "threads"};
+        std::vector<std::string_view> known{"title",     "scenes",       "method",
+                                            "seeds",     "passes",       "record",
+                                            "snapshots", "resolution",   "samples_per_pixel",
+                                            "threads",   "decomposition"};
         for (const SettingField& field : setting_fields()) known.push_back(field.name);
         require_known(root, known);
 
@@ -195,6 +196,11 @@ private:
             experiment_.samples_per_pixel = static_cast<int>(samples);
         }
         if (const toml::node* node = root.get("resolution")) resolution_ = resolution(*node);
+        if (const toml::node* node = root.get("decomposition")) {
+            const auto value = node->value_exact<bool>();
+            if (!value) throw InputError(place(*node), "decomposition: expected true or false");
+            experiment_.decomposition = *value;
+        }
     }
 
     void read_seeds(const toml::table& root) {
@@ -218,6 +224,44 @@ private:
         return whole;
     }
 
+    /// Calls `take(name, whole numbers, place)` for each entry of a table of lists of `count` numbers.
+    template <typename Take>
+    void read_named_pixels(const toml::table& scene, std::string_view key, std::size_t count, std::string_view expected,
+                           const Take& take) const {
+        const toml::node* node = scene.get(key);
+        if (!node) return;
+        const toml::table* table = node->as_table();
+        if (!table)
+            throw InputError(place(*node), fmt::format("{}: expected a table of names, each {}", key, expected));
+        for (const auto& [name, value] : *table) {
+            const std::string written(name.str());
+            if (written != file_safe(written))
+                throw InputError(place(value), fmt::format("{}: \"{}\" is no name for a file", key, written));
+            const std::vector<std::uint64_t> numbers = integers(value, written, 0, largest_side);
+            if (numbers.size() != count)
+                throw InputError(place(value), fmt::format("{}: expected {}", written, expected));
+            take(written, std::vector<int>(numbers.begin(), numbers.end()), place(value));
+        }
+    }
+
+    void read_regions(const toml::table& table, SceneEntry& scene) const {
+        read_named_pixels(table, "regions", 4, "[left, top, right, bottom]",
+                          [&](const std::string& name, const std::vector<int>& edges, const std::string& where) {
+                              if (edges[0] >= edges[2] || edges[1] >= edges[3] || name == "image")
+                                  throw InputError(
+                                      where, name + (name == "image" ? ": is the name of the whole image"
+                                                                     : ": expected left < right and top < bottom"));
+                              scene.regions.push_back({name, edges[0], edges[1], edges[2], edges[3]});
+                          });
+    }
+
+    void read_probes(const toml::table& table, SceneEntry& scene) const {
+        read_named_pixels(table, "probes", 2, "[x, y]",
+                          [&](const std::string& name, const std::vector<int>& pixel, const std::string&) {
+                              scene.probes.push_back({name, pixel[0], pixel[1]});
+                          });
+    }
+
     void read_scenes(const toml::table& root) {
         const toml::array* scenes = root["scenes"].as_array();
         if (!scenes || scenes->empty())
@@ -227,12 +271,14 @@ private:
             SceneEntry scene;
             scene.resolution = resolution_;
             if (const toml::table* table = node.as_table()) {
-                require_known(*table, {"path", "reference", "resolution", "name"});
+                require_known(*table, {"path", "reference", "resolution", "name", "regions", "probes"});
                 if (!table->contains("path")) throw InputError(place(node), "scene: path is missing");
                 scene.file = path(*table->get("path"), "path");
                 if (const toml::node* reference = table->get("reference"))
                     scene.reference = path(*reference, "reference");
                 if (const toml::node* pixels = table->get("resolution")) scene.resolution = resolution(*pixels);
+                read_regions(*table, scene);
+                read_probes(*table, scene);
                 if (const toml::node* name = table->get("name")) scene.name = file_safe(string(*name, "name"));
             } else {
                 scene.file = path(node, "scenes");
@@ -314,7 +360,8 @@ private:
         const std::string name = method.name.value_or(settings.values.integrator);
         for (const std::uint64_t seed : seeds_) {
             ExperimentRun run;
-            run.name = file_safe(fmt::format("{}_{}{}_seed-{}", experiment_.scenes[scene].name, name, swept, seed));
+            run.point = file_safe(fmt::format("{}_{}{}", experiment_.scenes[scene].name, name, swept));
+            run.name = fmt::format("{}_seed-{}", run.point, seed);
             run.scene = scene;
             run.method = name;
             run.settings = settings;

@@ -11,6 +11,10 @@
 //     integrator = "ppm"
 //     alpha = [0.5, 0.7, 0.9]        # an axis
 //
+// `decomposition = true` keeps sums of images over seeds (ensemble.h), from which bias and variance are told apart; a
+// scene's `regions = { caustic = [left, top, right, bottom] }` are then looked at apart from the whole image. Its
+// `probes = { corner = [x, y] }` are pixels whose radius, photon count and radiance are recorded after every pass.
+//
 // Settings of methods at the top level are defaults for every method that uses them. Paths are relative to the file.
 
 #pragma once
@@ -26,16 +30,32 @@
 
 namespace photonlab {
 
+/// A named rectangle of pixels in which errors are studied apart: smooth light, edges, a caustic.
+struct Region {
+    std::string name;
+    int left = 0, top = 0;      ///< first column and row, from 0; y from the top
+    int right = 0, bottom = 0;  ///< one past the last
+};
+
+/// A named pixel whose gathering is recorded pass by pass.
+struct Probe {
+    std::string name;
+    int x = 0, y = 0;  ///< from 0; y from the top
+};
+
 struct SceneEntry {
     std::filesystem::path file;
     std::string name;                                ///< of the scene's folder, or of the file if that is not scene.xml
     std::optional<std::filesystem::path> reference;  ///< folder of halves, or an EXR; without one no errors are taken
     std::optional<Resolution> resolution;            ///< in place of the scene file's
+    std::vector<Region> regions;
+    std::vector<Probe> probes;
 };
 
 /// One point of the product.
 struct ExperimentRun {
-    std::string name;       ///< unique and fit for a file: scene, method, what is swept, seed
+    std::string name;       ///< unique and fit for a file: the point's, and the seed
+    std::string point;      ///< of the product without its seeds: scene, method, what is swept
     std::size_t scene = 0;  ///< index into Experiment::scenes
     std::string method;     ///< the name its method was given
     ChosenSettings settings;
@@ -53,6 +73,7 @@ struct Experiment {
     std::vector<std::uint64_t> snapshots;  ///< passes whose image is kept: increasing, always with the last
     int samples_per_pixel = 1;             ///< a perfect square
     int threads = 1;
+    bool decomposition = false;  ///< keep sums over seeds, from which bias and variance are told apart
 };
 
 /// What `photonlab run --smoke` shrinks an experiment to, so that all of it runs in seconds.

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "core/files.h"
 #include "core/hash.h"
+#include "experiment/ensemble.h"
 #include "experiment/progress.h"
 #include "experiment/reference.h"
 #include "experiment/run_estimate.h"
@@ -31,24 +33,26 @@ std::vector<const ExperimentRun*> select_runs(const Experiment& experiment, cons
     return selected;
 }
 
-/// Everything that changes what a run records.
-std::string run_key(const Experiment& experiment, const ExperimentRun& run, const RunSettings& settings,
-                    const Scene& scene, const std::string& reference_key) {
+/// Everything that changes what the runs of a point record, but their seed.
+std::string point_key(const Experiment& experiment, const ExperimentRun& run, const RunSettings& settings,
+                      const Scene& scene, const std::string& reference_key) {
+    const SceneEntry& entry = experiment.scenes[run.scene];
+    Json probes = Json::array();
+    for (const Probe& probe : entry.probes) probes.push_back({probe.name, probe.x, probe.y});
     return hash_text(Json{
         {"program", program_version().version},
         {"experiment", experiment.name},
         {"title", experiment.title},
-        {"run", run.name},
+        {"point", run.point},
         {"settings", settings_json(settings.method)},
-        {"seed", settings.seed},
         {"passes", settings.passes},
         {"recorded", experiment.recorded},
-        {"snapshots", experiment.snapshots},
         {"threads", settings.threads},
         {"width", scene.camera.width},
         {"height", scene.camera.height},
         {"samples_per_pixel", experiment.samples_per_pixel},
         {"scene", scene.hash},
+        {"probes", probes},
         {"reference",
          reference_key}}.dump());
 }
@@ -72,65 +76,195 @@ bool contains(const std::vector<std::uint64_t>& sorted, std::uint64_t pass) {
     return std::binary_search(sorted.begin(), sorted.end(), pass);
 }
 
-/// Runs one run into its folder; run.json goes first and comes last, so that no half-made run looks finished.
-void execute(const Experiment& experiment, const PreparedRun& prepared, const Scene& scene, const HitPoints& hit_points,
-             const Reference* reference, const PassListener& on_pass, std::string& summary) {
-    const SceneEntry& entry = experiment.scenes[prepared.run->scene];
-    const auto began = std::chrono::steady_clock::now();
-    RunRecord record{experiment.title,
-                     prepared.run->method,
-                     prepared.key,
-                     entry.file,
-                     std::chrono::system_clock::now(),
-                     0.0,
-                     experiment.recorded,
-                     {}};
-    std::filesystem::remove(prepared.folder / "run.json");
-    std::filesystem::remove_all(prepared.folder / "snapshots");
-    make_folder(prepared.folder / "snapshots");
-    reset_peak_resident();
-
-    Recorder recorder({experiment.name, prepared.run->name, entry.name, prepared.settings, scene.camera.width,
-                       scene.camera.height, experiment.samples_per_pixel, hit_points.points.size()},
-                      reference, prepared.folder / "iterations.csv");
-    const RunState last = run_method(
-        scene, hit_points, prepared.settings,
-        [&](const RunState& state, const Image& image) {
-            if (contains(experiment.recorded, state.pass)) recorder.record(state, image);
-            if (!contains(experiment.snapshots, state.pass)) return;
-            const std::string file = "snapshots/" + snapshot_name(state.pass);
-            write_exr(prepared.folder / file, image, image_metadata(recorder.identity(), state, scene));
-            record.snapshots.push_back({state.pass, file});
-        },
-        on_pass);
-    record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-    write_text_file(prepared.folder / "run.json",
-                    run_json(record, recorder, last, scene, hit_points, reference).dump(2) + "\n");
-
-    summary = fmt::format("finished {} in {}", prepared.run->name, describe_duration(record.seconds));
-    if (recorder.last_total_errors()) summary += fmt::format(", rmse {:.4g}", recorder.last_total_errors()->rmse);
-    if (recorder.nonfinite_pixels() > 0) summary += ", with non-finite pixels (run.json says where)";
+/// The hit point of a pixel that carries most of it: the only one, but for several samples a pixel, mirrors and glass.
+std::optional<std::size_t> heaviest_hit_point(const HitPoints& hit_points, const Probe& probe) {
+    const auto pixel = static_cast<std::uint32_t>(probe.y * hit_points.width + probe.x);
+    std::optional<std::size_t> heaviest;
+    for (std::size_t i = 0; i < hit_points.points.size(); ++i) {
+        if (hit_points.points[i].pixel != pixel) continue;
+        if (!heaviest || mean_channel(ColorD(hit_points.points[i].weight)) >
+                             mean_channel(ColorD(hit_points.points[*heaviest].weight)))
+            heaviest = i;
+    }
+    return heaviest;
 }
 
-/// The rows of every finished run, in the experiment's order.
+const std::string probes_header =
+    "schema,experiment,run,scene,seed,probe,x,y,pass,radius,photons,density,radiance_r,radiance_g,radiance_b";
+
+/// What the probes of a scene show of a method, a row each.
+std::string probe_rows(const RunIdentity& identity, const std::vector<Probe>& probes, const HitPoints& hit_points,
+                       std::uint64_t pass, const Integrator& integrator) {
+    std::string rows;
+    for (const Probe& probe : probes) {
+        const auto hit_point = heaviest_hit_point(hit_points, probe);
+        const auto state = hit_point ? integrator.gather_state(*hit_point) : std::nullopt;
+        if (!state) continue;
+        rows += fmt::format("1,{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_quoted(identity.experiment),
+                            csv_quoted(identity.run), csv_quoted(identity.scene), identity.settings.seed, probe.name,
+                            probe.x, probe.y, pass, state->radius, state->photons,
+                            state->density ? fmt::format("{}", *state->density) : "", state->radiance.x,
+                            state->radiance.y, state->radiance.z);
+    }
+    return rows;
+}
+
+/// A run while it is running.
+struct OpenRun {
+    const PreparedRun* prepared;
+    RunRecord record;
+    Recorder recorder;
+    std::vector<PassImage> recorded_images;  // for the ensemble
+    std::string probes;                      // rows
+};
+
+Ensemble ensemble_of(const Experiment& experiment, const PreparedRun& prepared, const std::filesystem::path& results) {
+    const SceneEntry& entry = experiment.scenes[prepared.run->scene];
+    Json regions = Json::object();
+    for (const Region& region : entry.regions)
+        regions[region.name] = {region.left, region.top, region.right, region.bottom};
+    return Ensemble(results / "ensembles" / prepared.run->point, prepared.point_key,
+                    {{"experiment", experiment.name},
+                     {"title", experiment.title},
+                     {"point", prepared.run->point},
+                     {"scene", entry.name},
+                     {"method", prepared.run->method},
+                     {"photons_carry_direct", photons_carry_direct(prepared.settings.method)},
+                     {"reference", entry.reference ? Json{{"path", entry.reference->string()}} : Json()},
+                     {"working_directory", std::filesystem::current_path().string()},
+                     {"regions", regions},
+                     {"passes", experiment.recorded}});
+}
+
+/// Runs methods side by side, each into its folder; run.json goes first and comes last, so that no half-made run looks
+/// finished.
+void execute(const Experiment& experiment, const std::vector<const PreparedRun*>& together, const Scene& scene,
+             const HitPoints& hit_points, const Reference* reference, const std::filesystem::path& results,
+             const PassListener& on_pass, std::string& summary) {
+    const SceneEntry& entry = experiment.scenes[together.at(0)->run->scene];
+    const auto began = std::chrono::steady_clock::now();
+    std::vector<OpenRun> open;
+    std::vector<RunSettings> settings;
+    for (const PreparedRun* prepared : together) {
+        std::filesystem::remove(prepared->folder / "run.json");
+        std::filesystem::remove_all(prepared->folder / "snapshots");
+        make_folder(prepared->folder / "snapshots");
+        open.push_back(
+            {prepared,
+             RunRecord{experiment.title,
+                       prepared->run->method,
+                       prepared->key,
+                       entry.file,
+                       std::chrono::system_clock::now(),
+                       0.0,
+                       together.size(),
+                       experiment.recorded,
+                       {}},
+             Recorder({experiment.name, prepared->run->name, entry.name, prepared->settings, scene.camera.width,
+                       scene.camera.height, experiment.samples_per_pixel, hit_points.points.size()},
+                      reference, prepared->folder / "iterations.csv"),
+             {},
+             {}});
+        settings.push_back(prepared->settings);
+    }
+    reset_peak_resident();
+
+    const std::vector<RunState> last = run_methods(
+        scene, hit_points, settings,
+        [&](std::size_t method, const RunState& state, const Image& image) {
+            OpenRun& run = open[method];
+            if (contains(experiment.recorded, state.pass)) {
+                run.recorder.record(state, image);
+                if (experiment.decomposition) run.recorded_images.push_back({state.pass, image});
+            }
+            if (!contains(experiment.snapshots, state.pass)) return;
+            const std::string file = "snapshots/" + snapshot_name(state.pass);
+            write_exr(run.prepared->folder / file, image, image_metadata(run.recorder.identity(), state, scene));
+            run.record.snapshots.push_back({state.pass, file});
+        },
+        on_pass,
+        [&](std::size_t method, std::uint64_t pass, const Integrator& integrator) {
+            open[method].probes +=
+                probe_rows(open[method].recorder.identity(), entry.probes, hit_points, pass, integrator);
+        });
+
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    for (std::size_t i = 0; i < open.size(); ++i) {
+        OpenRun& run = open[i];
+        const std::filesystem::path& folder = run.prepared->folder;
+        run.record.seconds = seconds;
+        if (!run.probes.empty()) write_text_file(folder / "probes.csv", probes_header + "\n" + run.probes);
+        if (experiment.decomposition)
+            ensemble_of(experiment, *run.prepared, results).add(run.prepared->run->seed, run.recorded_images);
+        write_text_file(folder / "run.json",
+                        run_json(run.record, run.recorder, last[i], scene, hit_points, reference).dump(2) + "\n");
+
+        summary += fmt::format("{}finished {} in {}", i > 0 ? "\n" : "", run.prepared->run->name,
+                               describe_duration(last[i].times.total()));
+        if (run.recorder.last_total_errors())
+            summary += fmt::format(", rmse {:.4g}", run.recorder.last_total_errors()->rmse);
+        if (run.recorder.nonfinite_pixels() > 0) summary += ", with non-finite pixels (run.json says where)";
+    }
+}
+
+/// The rows of a run's file, without its header, which must be `header`.
+std::string rows_of(const std::filesystem::path& file, const std::string& header) {
+    const std::string text = read_text_file(file);
+    const std::size_t header_end = text.find('\n');
+    if (header_end == std::string::npos || text.substr(0, header_end) != header)
+        throw InputError(file.string(), "its columns are not those of this program; delete it");
+    return text.substr(header_end + 1);
+}
+
+/// The rows of every finished run, in the experiment's order; returns how many runs there are.
 std::size_t merge_records(const Experiment& experiment, const std::filesystem::path& results,
                           const std::map<std::string, std::string>& keys) {
-    std::string merged = csv_header() + "\n";
+    std::string records = csv_header() + "\n";
+    std::string probes;
     std::size_t count = 0;
     for (const ExperimentRun& run : experiment.runs) {
         const auto key = keys.find(run.name);
         const std::filesystem::path folder = results / "runs" / run.name;
         if (key == keys.end() || !is_finished(folder, key->second)) continue;
-        const std::string rows = read_text_file(folder / "iterations.csv");
-        const std::size_t header_end = rows.find('\n');
-        if (header_end == std::string::npos || rows.substr(0, header_end) != csv_header())
-            throw InputError((folder / "iterations.csv").string(),
-                             "its columns are not those of this program; delete it");
-        merged += rows.substr(header_end + 1);
+        records += rows_of(folder / "iterations.csv", csv_header());
+        if (std::filesystem::exists(folder / "probes.csv")) probes += rows_of(folder / "probes.csv", probes_header);
         ++count;
     }
-    write_text_file(results / "iterations.csv", merged);
+    write_text_file(results / "iterations.csv", records);
+    if (!probes.empty()) write_text_file(results / "probes.csv", probes_header + "\n" + probes);
     return count;
+}
+
+/// Refuses regions and probes outside the image.
+void require_inside(const SceneEntry& entry, const Scene& scene) {
+    const int width = scene.camera.width;
+    const int height = scene.camera.height;
+    for (const Region& region : entry.regions)
+        if (region.right > width || region.bottom > height)
+            throw InputError(entry.file.string(),
+                             fmt::format("region {}: expected pixels inside {}x{}, got up to {} {}", region.name, width,
+                                         height, region.right, region.bottom));
+    for (const Probe& probe : entry.probes)
+        if (probe.x >= width || probe.y >= height)
+            throw InputError(entry.file.string(), fmt::format("probe {}: expected a pixel inside {}x{}, got {} {}",
+                                                              probe.name, width, height, probe.x, probe.y));
+}
+
+/// What is not finished, in groups that share their photons. Only runs of the same scene, seed, depth and photons do.
+std::vector<std::vector<const PreparedRun*>> runs_together(const std::vector<PreparedRun>& runs) {
+    std::vector<std::vector<const PreparedRun*>> groups;
+    for (const PreparedRun& run : runs) {
+        if (run.finished) continue;
+        const auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& candidate) {
+            return candidate[0]->run->scene == run.run->scene &&
+                   can_share_photons(candidate[0]->settings, run.settings);
+        });
+        if (group != groups.end())
+            group->push_back(&run);
+        else
+            groups.push_back({&run});
+    }
+    return groups;
 }
 
 }  // namespace
@@ -143,7 +277,10 @@ PreparedExperiment prepare_experiment(const Experiment& experiment, const std::f
     for (const ExperimentRun* run : select_runs(experiment, only)) {
         const SceneEntry& entry = experiment.scenes[run->scene];
         std::optional<Scene>& scene = prepared.scenes[run->scene];
-        if (!scene) scene = build_scene(load_scene_file(entry.file), entry.resolution);
+        if (!scene) {
+            scene = build_scene(load_scene_file(entry.file), entry.resolution);
+            require_inside(entry, *scene);
+        }
 
         PreparedRun ready;
         ready.run = run;
@@ -161,9 +298,11 @@ PreparedExperiment prepare_experiment(const Experiment& experiment, const std::f
                                                                              ready.settings.method.max_depth));
             reference_key = known->second;
         }
-        ready.key = run_key(experiment, *run, ready.settings, *scene, reference_key);
+        ready.point_key = point_key(experiment, *run, ready.settings, *scene, reference_key);
+        ready.key = hash_text(fmt::format("{} {} {}", ready.point_key, run->seed, Json(experiment.snapshots).dump()));
         ready.folder = results / "runs" / run->name;
-        ready.finished = is_finished(ready.folder, ready.key);
+        ready.finished = is_finished(ready.folder, ready.key) &&
+                         (!experiment.decomposition || ensemble_of(experiment, ready, results).contains(run->seed));
         prepared.runs.push_back(std::move(ready));
     }
     return prepared;
@@ -175,42 +314,40 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
     outcome.records = results / "iterations.csv";
     require_writable(outcome.records);
 
-    const auto to_do = static_cast<std::uint64_t>(std::count_if(prepared.runs.begin(), prepared.runs.end(),
-                                                                [](const PreparedRun& run) { return !run.finished; }));
-    Progress progress(to_do * experiment.passes);
+    const std::vector<std::vector<const PreparedRun*>> groups = runs_together(prepared.runs);
+    for (const PreparedRun& ready : prepared.runs) outcome.skipped += ready.finished;
+    Progress progress(groups.size() * experiment.passes);
     std::optional<std::size_t> current_scene;
     std::optional<HitPoints> hit_points;
     std::optional<Reference> reference;
     int reference_depth = -1;
-    std::uint64_t passes_before = 0;
-    for (const PreparedRun& ready : prepared.runs) {
-        if (ready.finished) {
-            ++outcome.skipped;
-            continue;
-        }
-        const SceneEntry& entry = experiment.scenes[ready.run->scene];
-        const Scene& scene = *prepared.scenes[ready.run->scene];
-        const int max_depth = ready.settings.method.max_depth;
-        if (current_scene != ready.run->scene) {
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+        const PreparedRun& first = *groups[i].at(0);
+        const SceneEntry& entry = experiment.scenes[first.run->scene];
+        const Scene& scene = *prepared.scenes[first.run->scene];
+        const int max_depth = first.settings.method.max_depth;
+        if (current_scene != first.run->scene) {
             hit_points = trace_hit_points(scene, experiment.samples_per_pixel, experiment.threads);
             reference.reset();
         }
         if (entry.reference && (!reference || reference_depth != max_depth))
             reference = load_reference(*entry.reference, subject_of(scene, experiment.samples_per_pixel, max_depth));
-        current_scene = ready.run->scene;
+        current_scene = first.run->scene;
         reference_depth = max_depth;
 
-        const std::string counted = fmt::format("run {} of {}: {}", outcome.ran + 1, to_do, ready.run->name);
-        progress.show(passes_before, counted);
+        const std::string others = groups[i].size() > 1 ? fmt::format(" and {} more", groups[i].size() - 1) : "";
+        const std::string counted = fmt::format("{} of {}: {}{}", i + 1, groups.size(), first.run->name, others);
+        progress.show(i * experiment.passes, counted);
         std::string summary;
         execute(
-            experiment, ready, scene, *hit_points, reference ? &*reference : nullptr,
-            [&](std::uint64_t pass) { progress.show(passes_before + pass, counted); }, summary);
-        passes_before += experiment.passes;
-        ++outcome.ran;
+            experiment, groups[i], scene, *hit_points, reference ? &*reference : nullptr, results,
+            [&](std::uint64_t pass) { progress.show(i * experiment.passes + pass, counted); }, summary);
+        outcome.ran += groups[i].size();
         progress.finished(summary);
     }
     progress.clear();
+    if (experiment.decomposition)
+        for (const PreparedRun& ready : prepared.runs) ensemble_of(experiment, ready, results).describe();
 
     // Runs outside the selection may be finished too: their keys need their scenes, so all are prepared for the merge.
     std::map<std::string, std::string> keys;
@@ -230,6 +367,8 @@ std::string list_runs(const Experiment& experiment, const PreparedExperiment& pr
     HitPoints hit_points;
     double seconds = 0.0;
     double mebibytes = 0.0;
+    std::set<const PreparedRun*> first_of_group;
+    for (const auto& group : runs_together(prepared.runs)) first_of_group.insert(group[0]);
     for (const PreparedRun& ready : prepared.runs) {
         if (ready.finished) {
             list += fmt::format("{:<{}}  finished\n", ready.run->name, width);
@@ -243,7 +382,7 @@ std::string list_runs(const Experiment& experiment, const PreparedExperiment& pr
             estimates.try_emplace(fmt::format("{} {}", ready.run->scene, settings_json(ready.settings.method).dump()));
         if (is_new) known->second = estimate_run(scene, hit_points, ready.settings);
         const RunEstimate& estimate = known->second;
-        seconds += estimate.seconds;
+        seconds += estimate.seconds - (first_of_group.contains(&ready) ? 0.0 : estimate.trace_seconds);
         mebibytes = std::max(mebibytes, estimate.mebibytes);
         list += fmt::format("{:<{}}  about {}, {:.0f} MiB\n", ready.run->name, width,
                             describe_duration(estimate.seconds), estimate.mebibytes);

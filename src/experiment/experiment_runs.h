@@ -1,9 +1,12 @@
-// Runs an experiment: whatever of it is not finished, one run after another, each into a folder of its own.
+// Runs an experiment: whatever of it is not finished, each run into a folder of its own. Runs of one scene and seed
+// with the same photons a pass run side by side and share them; what is shared is charged in full to each.
 //
 //     RESULTS/iterations.csv                    all finished runs of the experiment, replaced at once at the end
 //     RESULTS/runs/RUN/iterations.csv           the run's rows, appended as its passes finish
 //     RESULTS/runs/RUN/snapshots/pass-000064.exr
 //     RESULTS/runs/RUN/run.json                 written last: a folder without it is not finished
+//     RESULTS/probes.csv, RESULTS/runs/RUN/probes.csv    of scenes with probes: what was gathered there, pass by pass
+//     RESULTS/ensembles/POINT/                  with `decomposition`: ensemble.h
 //
 // A finished run is recognised by its key: a hash of its settings, scene, reference and the program's version. One
 // whose key differs from what the experiment asks for now is made again from the start.
@@ -26,6 +29,7 @@ struct PreparedRun {
     const ExperimentRun* run = nullptr;
     RunSettings settings;
     std::string key;
+    std::string point_key;  ///< the same without the seed
     std::filesystem::path folder;
     bool finished = false;  ///< with this key
 };

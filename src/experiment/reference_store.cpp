@@ -46,7 +46,8 @@ std::string describe_method(const MethodSettings& method) {
 
 MethodSettings method_of(const ReferenceSettings& settings) {
     if (settings.integrator != "path" && settings.integrator != "ppm")
-        throw InputError(fmt::format("integrator: expected path or ppm for a reference, got \"{}\"", settings.integrator));
+        throw InputError(
+            fmt::format("integrator: expected path or ppm for a reference, got \"{}\"", settings.integrator));
     MethodSettings method;
     method.integrator = settings.integrator;
     method.schedule = ScheduleName::KnausZwicker;
@@ -112,16 +113,17 @@ public:
 
     void add_sample() {
         ++new_samples_;
-        PhotonPass photons;
-        if (find_integrator_kind(method_.integrator).needs_photons)
-            photons = trace_photons(scene_, photon_settings_, samples(), threads_);
-        integrator_->run_pass(samples(), photons, [](Stage) {});
+        if (find_integrator_kind(method_.integrator).needs == PhotonNeed::PassMap) {
+            photons_.begin_pass(trace_photons(scene_, photon_settings_, samples(), threads_));
+            photons_.index_pass();
+        }
+        integrator_->run_pass(samples(), photons_, [](Stage) {});
     }
 
     /// Mean over old and new samples, in double until it is stored.
     Image mean() {
         if (new_samples_ == 0) return stored_;
-        Image image = integrator_->estimate([](Stage) {});
+        Image image = integrator_->estimate(photons_, [](Stage) {});
         if (stored_samples_ == 0) return image;
         const double share = static_cast<double>(new_samples_) / static_cast<double>(samples());
         for (Layer& layer : image.layers) {
@@ -151,6 +153,7 @@ private:
     const int threads_;
     const PhotonSettings photon_settings_;
     std::unique_ptr<Integrator> integrator_;
+    PhotonSupply photons_;
     Image stored_;
     std::uint64_t stored_samples_ = 0;
     std::uint64_t new_samples_ = 0;

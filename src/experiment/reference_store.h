@@ -28,11 +28,11 @@ namespace photonlab {
 
 struct ReferenceSettings {
     std::filesystem::path scene_file;
-    std::string integrator = "path";            ///< or "ppm"
-    std::uint64_t samples = 1024;               ///< to add to each half: paths a sample position (path), passes (ppm)
+    std::string integrator = "path";             ///< or "ppm"
+    std::uint64_t samples = 1024;                ///< to add to each half: paths a sample position (path), passes (ppm)
     std::uint64_t photons_per_pass = 1'000'000;  ///< ppm
-    double alpha = 2.0 / 3.0;                   ///< ppm
-    int samples_per_pixel = 1;     ///< sample positions, a perfect square
+    double alpha = 2.0 / 3.0;                    ///< ppm
+    int samples_per_pixel = 1;                   ///< sample positions, a perfect square
     int max_depth = -1;
     std::uint64_t seed = 1;  ///< must be the one that is there already, when adding
     int threads = 1;

@@ -42,7 +42,8 @@ RunEstimate estimate_run(const Scene& scene, const HitPoints& hit_points, const 
     RunState estimated[2];
     std::size_t next = 0;
     const RunState passes =
-        run_method(scene, hit_points, probe, [&](const RunState& state, const Image&) { estimated[next++] = state; });
+        run_methods(scene, hit_points, {probe},
+                    [&](std::size_t, const RunState& state, const Image&) { estimated[next++] = state; })[0];
 
     const double pass_seconds = scaled(passes.times, scale) / static_cast<double>(probe_passes);
     const double first = std::max(0.0, scaled(estimated[0].times, scale) - pass_seconds);
@@ -51,6 +52,9 @@ RunEstimate estimate_run(const Scene& scene, const HitPoints& hit_points, const 
 
     RunEstimate estimate;
     estimate.seconds = pass_seconds * static_cast<double>(settings.passes);
+    if (passes.paths_emitted > 0)
+        estimate.trace_seconds = passes.times.of(Stage::Trace) * scale / static_cast<double>(probe_passes) *
+                                 static_cast<double>(settings.passes);
     for (const std::uint64_t pass : settings.estimated)
         estimate.seconds += first + growth * static_cast<double>(pass > 0 ? pass - 1 : 0);
 

@@ -14,8 +14,9 @@
 namespace photonlab {
 
 struct RunEstimate {
-    double seconds = 0.0;    ///< of passes and estimates; metrics and files not included
-    double mebibytes = 0.0;  ///< of the process at its largest
+    double seconds = 0.0;        ///< of passes and estimates; metrics and files not included
+    double trace_seconds = 0.0;  ///< of these in tracing photons, which methods run together share
+    double mebibytes = 0.0;      ///< of the process at its largest
 };
 
 RunEstimate estimate_run(const Scene& scene, const HitPoints& hit_points, const RunSettings& settings);

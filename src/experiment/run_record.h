@@ -29,7 +29,8 @@ struct RunRecord {
     std::string key;  ///< by which a finished run is recognised
     std::filesystem::path scene_file;
     std::chrono::system_clock::time_point started;
-    double seconds = 0.0;  ///< from start to end, hit points, metrics and files included
+    double seconds = 0.0;  ///< from start to end of all runs that shared the photons, metrics and files included
+    std::size_t runs_together = 1;  ///< that shared them, this one included
     std::vector<std::uint64_t> recorded;
     std::vector<Snapshot> snapshots;
 };

@@ -2,6 +2,8 @@
 
 #include <ctime>
 
+#include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <numeric>
 
@@ -54,54 +56,131 @@ void StageClock::stop() {
     stage_.reset();
 }
 
-RunState run_method(const Scene& scene, const HitPoints& hit_points, const RunSettings& settings,
-                    const EstimateListener& on_estimate, const PassListener& on_pass) {
-    const IntegratorContext context{scene, hit_points, settings.seed, settings.threads, RandomPurpose::CameraPaths};
-    const std::unique_ptr<Integrator> integrator = make_integrator(settings.method, context);
-    const bool needs_photons = find_integrator_kind(settings.method.integrator).needs_photons;
-    const PhotonSettings photon_settings{settings.method.photons_per_pass, settings.seed, settings.method.max_depth,
-                                         settings.method.direct == DirectMode::Photons};
+namespace {
 
+/// One of the methods that run side by side.
+struct RunningMethod {
+    std::unique_ptr<Integrator> integrator;
+    PhotonNeed needs;
     RunState state;
-    state.report = integrator->report();
-    state.initial_radius = state.report.radius_mean;
-    StageTimes passes_alone;
-    auto next_estimate = settings.estimated.begin();
-    const auto estimate_if_asked = [&] {
-        state.report = integrator->report();
-        state.times = passes_alone;
-        if (next_estimate == settings.estimated.end() || *next_estimate != state.pass) return;
+    StageTimes passes_alone;  // without estimates
+};
+
+/// Times one step of the supply.
+template <typename Step>
+StageTimes timed(Stage stage, const Step& step) {
+    StageClock clock;
+    clock.enter(stage);
+    step();
+    clock.stop();
+    return clock.times();
+}
+
+/// Adds what a shared step took to each method that needs it, as if it were alone.
+void charge(std::vector<RunningMethod>& methods, PhotonNeed need, const StageTimes& times) {
+    for (RunningMethod& method : methods)
+        if (method.needs == need) method.passes_alone += times;
+}
+
+PhotonSettings photons_of(const RunSettings& settings) {
+    return {.paths = settings.method.photons_per_pass,
+            .seed = settings.seed,
+            .max_depth = settings.method.max_depth,
+            .store_direct = settings.method.direct == DirectMode::Photons};
+}
+
+}  // namespace
+
+bool can_share_photons(const RunSettings& a, const RunSettings& b) {
+    const auto traces = [](const RunSettings& settings) {
+        return find_integrator_kind(settings.method.integrator).needs != PhotonNeed::None;
+    };
+    return traces(a) && traces(b) && photons_of(a) == photons_of(b) && a.passes == b.passes && a.threads == b.threads &&
+           a.estimated == b.estimated;
+}
+
+std::vector<RunState> run_methods(const Scene& scene, const HitPoints& hit_points,
+                                  const std::vector<RunSettings>& settings, const EstimateListener& on_estimate,
+                                  const PassListener& on_pass, const GatherListener& on_gather) {
+    const RunSettings& common = settings.at(0);
+    std::vector<RunningMethod> methods;
+    for (const RunSettings& one : settings) {
+        assert(settings.size() == 1 || can_share_photons(common, one));
+        RunningMethod method;
+        method.integrator = make_integrator(one.method, {scene, hit_points, one.seed, one.threads});
+        method.needs = find_integrator_kind(one.method.integrator).needs;
+        method.state.report = method.integrator->report();
+        method.state.initial_radius = method.state.report.radius_mean;
+        methods.push_back(std::move(method));
+    }
+    const auto is_needed = [&](PhotonNeed need) {
+        return std::any_of(methods.begin(), methods.end(), [&](const RunningMethod& m) { return m.needs == need; });
+    };
+    const bool needs_pass_map = is_needed(PhotonNeed::PassMap);
+    const bool needs_all_passes = is_needed(PhotonNeed::AllPassesMaps);
+    const PhotonSettings photon_settings = photons_of(common);
+    PhotonSupply photons;
+
+    auto next_estimate = common.estimated.begin();
+    const auto estimate_if_asked = [&](std::uint64_t pass) {
+        const bool is_asked = next_estimate != common.estimated.end() && *next_estimate == pass;
+        StageTimes shared;
+        if (is_asked && needs_all_passes) shared = timed(Stage::Build, [&] { photons.index_all_passes(); });
+        for (std::size_t i = 0; i < methods.size(); ++i) {
+            RunningMethod& method = methods[i];
+            method.state.report = method.integrator->report();
+            method.state.times = method.passes_alone;
+            if (!is_asked) continue;
+            StageClock clock;
+            const Image image = method.integrator->estimate(photons, [&](Stage stage) { clock.enter(stage); });
+            clock.stop();
+            method.state.times += clock.times();
+            if (method.needs == PhotonNeed::AllPassesMaps) {
+                method.state.times += shared;
+                on_gather(i, pass, *method.integrator);
+            }
+            method.state.report = method.integrator->report();
+            on_estimate(i, method.state, image);
+        }
+        if (!is_asked) return;
         ++next_estimate;
-        StageClock clock;
-        const Image image = integrator->estimate([&](Stage stage) { clock.enter(stage); });
-        clock.stop();
-        state.times += clock.times();
-        state.report = integrator->report();
-        on_estimate(state, image);
+        photons.drop_maps_of_all_passes();
     };
 
-    estimate_if_asked();
-    while (state.pass < settings.passes) {
-        ++state.pass;
-        StageClock clock;
-        PhotonPass photons;
-        if (needs_photons) {
-            clock.enter(Stage::Trace);
-            photons = trace_photons(scene, photon_settings, state.pass, settings.threads);
-            clock.stop();
-            state.paths_emitted += photons.paths_emitted;
-            state.photons_stored += photons.photons.size();
-            state.paths_cut += photons.paths_cut;
-            state.power_cut += photons.power_cut;
-            state.nonfinite_photons += photons.nonfinite;
+    estimate_if_asked(0);
+    for (std::uint64_t pass = 1; pass <= common.passes; ++pass) {
+        if (needs_pass_map || needs_all_passes) {
+            PhotonPass traced;
+            const StageTimes tracing =
+                timed(Stage::Trace, [&] { traced = trace_photons(scene, photon_settings, pass, common.threads); });
+            for (RunningMethod& method : methods) {
+                method.passes_alone += tracing;
+                method.state.paths_emitted += traced.paths_emitted;
+                method.state.photons_stored += traced.photons.size();
+                method.state.paths_cut += traced.paths_cut;
+                method.state.power_cut += traced.power_cut;
+                method.state.nonfinite_photons += traced.nonfinite;
+            }
+            photons.begin_pass(std::move(traced));
         }
-        integrator->run_pass(state.pass, photons, [&](Stage stage) { clock.enter(stage); });
-        clock.stop();
-        passes_alone += clock.times();
-        estimate_if_asked();
-        on_pass(state.pass);
+        if (needs_pass_map) charge(methods, PhotonNeed::PassMap, timed(Stage::Build, [&] { photons.index_pass(); }));
+        if (needs_all_passes)
+            charge(methods, PhotonNeed::AllPassesMaps, timed(Stage::Build, [&] { photons.add_pass(); }));
+        for (std::size_t i = 0; i < methods.size(); ++i) {
+            RunningMethod& method = methods[i];
+            StageClock clock;
+            method.integrator->run_pass(pass, photons, [&](Stage stage) { clock.enter(stage); });
+            clock.stop();
+            method.passes_alone += clock.times();
+            method.state.pass = pass;
+            if (method.needs == PhotonNeed::PassMap) on_gather(i, pass, *method.integrator);
+        }
+        estimate_if_asked(pass);
+        on_pass(pass);
     }
-    return state;
+    std::vector<RunState> last;
+    for (RunningMethod& method : methods) last.push_back(std::move(method.state));
+    return last;
 }
 
 }  // namespace photonlab

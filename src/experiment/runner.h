@@ -1,9 +1,10 @@
-// Runs one method on one scene: traces the photons of each pass, hands them to the integrator, keeps the time, and
-// shows the image at the passes that somebody asked for.
+// Runs methods on one scene, side by side: traces the photons of each pass once, hands them to every method, keeps the
+// time, and shows the images at the passes that somebody asked for.
 //
 // What time means: at pass i it is the time of tracing, building, gathering and direct light of passes 1 to i, plus
 // what the one estimate at i took; what earlier estimates took is not in it. So the choice of recorded passes changes
-// no number. Hit points, metrics and files are never in it.
+// no number. Hit points, metrics and files are never in it. What methods share (photons, and the maps over them) is
+// charged in full to each, as if it ran alone.
 
 #pragma once
 
@@ -66,12 +67,21 @@ struct RunState {
                                            ///< `nearest` the maximum radius
 };
 
-using EstimateListener = std::function<void(const RunState&, const Image&)>;
+/// `method` is the index into the settings of run_methods().
+using EstimateListener = std::function<void(std::size_t method, const RunState&, const Image&)>;
 using PassListener = std::function<void(std::uint64_t pass)>;
+/// Told whenever a method has gathered anew: ppm after every pass, photonmapper at every estimate.
+using GatherListener = std::function<void(std::size_t method, std::uint64_t pass, const Integrator&)>;
 
-/// Calls `on_estimate` for each pass of `settings.estimated` and `on_pass` after every pass; returns the last state.
-RunState run_method(
-    const Scene& scene, const HitPoints& hit_points, const RunSettings& settings, const EstimateListener& on_estimate,
-    const PassListener& on_pass = [](std::uint64_t) {});
+/// True when both trace the same photons in the same passes, and are looked at after the same passes.
+bool can_share_photons(const RunSettings& a, const RunSettings& b);
+
+/// Runs one method, or several that can share their photons. Calls `on_estimate` for each pass of `estimated`, method
+/// by method, and `on_pass` after every pass; returns the last states. Each method's images are, to the bit, those
+/// that it gives alone.
+std::vector<RunState> run_methods(
+    const Scene& scene, const HitPoints& hit_points, const std::vector<RunSettings>& settings,
+    const EstimateListener& on_estimate, const PassListener& on_pass = [](std::uint64_t) {},
+    const GatherListener& on_gather = [](std::size_t, std::uint64_t, const Integrator&) {});
 
 }  // namespace photonlab

@@ -119,9 +119,10 @@ const std::vector<SettingField>& setting_fields() {
                                      "5% of the scene's bounding radius"),
         field<&Settings::caustic_k>("caustic_k", "--caustic-k",
                                     "photonmapper, mode nearest: photons searched in the caustic map, at least 2"),
-        field<&Settings::caustic_radius>("caustic_radius", "--caustic-radius",
-                                         "photonmapper, mode radius: radius in the caustic map in scene units, or auto: "
-                                         "as --radius"),
+        field<&Settings::caustic_radius>(
+            "caustic_radius", "--caustic-radius",
+            "photonmapper, mode radius: radius in the caustic map in scene units, or auto: "
+            "as --radius"),
         field<&Settings::caustic_max_radius>("caustic_max_radius", "--caustic-max-radius",
                                              "photonmapper, mode nearest: largest radius in the caustic map in scene "
                                              "units, or auto: a quarter of --max-radius"),

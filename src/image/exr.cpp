@@ -88,6 +88,15 @@ void require_channels(const std::string& place, const Imf::ChannelList& channels
     }
 }
 
+Metadata string_attributes(const Imf::Header& header) {
+    Metadata metadata;
+    for (auto attribute = header.begin(); attribute != header.end(); ++attribute)
+        if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute());
+            text && std::strcmp(attribute.name(), layers_attribute) != 0)
+            metadata[attribute.name()] = text->value();
+    return metadata;
+}
+
 Image read_pixels(const std::filesystem::path& file, Metadata* metadata) {
     const std::string place = file.string();
     Imf::InputFile input(place.c_str());
@@ -124,13 +133,7 @@ Image read_pixels(const std::filesystem::path& file, Metadata* metadata) {
     input.setFrameBuffer(frame);
     input.readPixels(window.min.y, window.max.y);
 
-    if (metadata) {
-        metadata->clear();
-        for (auto attribute = header.begin(); attribute != header.end(); ++attribute)
-            if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute());
-                text && std::strcmp(attribute.name(), layers_attribute) != 0)
-                (*metadata)[attribute.name()] = text->value();
-    }
+    if (metadata) *metadata = string_attributes(header);
     return image;
 }
 
@@ -198,19 +201,33 @@ void write_exr(const std::filesystem::path& file, const Image& image, const Meta
     temporary.rename();
 }
 
-Image read_exr(const std::filesystem::path& file, Metadata* metadata) {
+namespace {
+
+/// Refuses what is not an OpenEXR file, and turns OpenEXR's own exceptions into InputErrors.
+template <typename Read>
+auto read_checked(const std::filesystem::path& file, const Read& read) {
     const std::string place = file.string();
     if (std::filesystem::is_directory(file)) throw InputError(place, "is a folder; expected an OpenEXR file");
     if (!std::ifstream(file, std::ios::binary))
         throw InputError(place, std::string("cannot be opened: ") + std::strerror(errno));
     if (!Imf::isOpenExrFile(place.c_str())) throw InputError(place, "is not an OpenEXR file");
     try {
-        return read_pixels(file, metadata);
+        return read();
     } catch (const InputError&) {
         throw;
     } catch (const std::exception& error) {
         throw InputError(place, std::string("cannot be read as OpenEXR: ") + error.what());
     }
+}
+
+}  // namespace
+
+Image read_exr(const std::filesystem::path& file, Metadata* metadata) {
+    return read_checked(file, [&] { return read_pixels(file, metadata); });
+}
+
+Metadata read_exr_metadata(const std::filesystem::path& file) {
+    return read_checked(file, [&] { return string_attributes(Imf::InputFile(file.c_str()).header()); });
 }
 
 }  // namespace photonlab

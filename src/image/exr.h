@@ -30,4 +30,7 @@ void write_exr(const std::filesystem::path& file, const Image& image, const Meta
 /// several parts, deep, subsampled, a size that the file cannot hold.
 Image read_exr(const std::filesystem::path& file, Metadata* metadata = nullptr);
 
+/// The string attributes alone. Throws InputError when it is not an EXR.
+Metadata read_exr_metadata(const std::filesystem::path& file);
+
 }  // namespace photonlab

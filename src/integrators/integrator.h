@@ -9,14 +9,14 @@
 
 #include "core/random.h"
 #include "image/image.h"
+#include "integrators/photon_supply.h"
 #include "integrators/settings.h"
 #include "scene/scene.h"
 #include "transport/hit_points.h"
-#include "transport/photons.h"
 
 namespace photonlab {
 
-/// Parts of a pass that are timed apart. Trace is the runner's own.
+/// Parts of a pass that are timed apart. For photon methods Trace and Build are the runner's own: they are shared.
 enum class Stage { Trace, Build, Gather, Direct };
 
 /// Called by an integrator when it enters a stage.
@@ -34,6 +34,16 @@ struct IntegratorReport {
     std::optional<double> radius_max;
 };
 
+/// What a method holds at one hit point after its last gather.
+struct GatherState {
+    double radius = 0.0;   ///< scene units: of the next gather (ppm), of the last in the global map (photonmapper)
+    double photons = 0.0;  ///< N of Hachisuka et al. 2008, which shrinks with the disc; for other methods those
+                           ///< found, by ppm in all passes
+    std::optional<double> density;  ///< photons / (pi radius^2), 1/scene unit^2; empty where the photons are not those
+                                    ///< of this disc
+    ColorD radiance;                ///< gathered, towards the camera
+};
+
 /// What every integrator is made from. The references must outlive it.
 struct IntegratorContext {
     const Scene& scene;
@@ -49,16 +59,22 @@ class Integrator {
 public:
     virtual ~Integrator() = default;
 
-    /// Takes pass `pass`, counted from 1 and called in order, with the photons of that pass (none for `path`). Methods
-    /// whose passes do not depend on each other (`path`, `ppm` with the schedule of Knaus and Zwicker) may begin at any
-    /// pass: their images are means over the passes they took, and can be joined.
-    virtual void run_pass(std::uint64_t pass, const PhotonPass& photons, const StageListener& enter) = 0;
+    /// Takes pass `pass`, counted from 1 and called in order. `photons` holds what the method's PhotonNeed says.
+    /// Methods whose passes do not depend on each other (`path`, `ppm` with the schedule of Knaus and Zwicker) may
+    /// begin at any pass: their images are means over the passes they took, and can be joined.
+    virtual void run_pass(std::uint64_t pass, const PhotonSupply& photons, const StageListener& enter) = 0;
 
     /// The image after the passes so far, layers "emission", "direct" and "gathered". After no pass at all: emission,
     /// and direct light sampled once for this alone. Changes nothing that later passes depend on.
-    virtual Image estimate(const StageListener& enter) = 0;
+    virtual Image estimate(const PhotonSupply& photons, const StageListener& enter) = 0;
 
     virtual IntegratorReport report() const = 0;
+
+    /// Of the hit point with this index; empty for a method that gathers nothing.
+    virtual std::optional<GatherState> gather_state(std::size_t hit_point) const {
+        static_cast<void>(hit_point);
+        return std::nullopt;
+    }
 };
 
 }  // namespace photonlab

@@ -39,8 +39,7 @@ PathSample trace_path(const Scene& scene, const HitPoint& point, int max_depth, 
             }
         }
 
-        const auto bounce = 
-            sample(surface.bsdf, surface.frame.to_local(outgoing), Carried::Radiance, random.next_2d());
+        const auto bounce = sample(surface.bsdf, surface.frame.to_local(outgoing), Carried::Radiance, random.next_2d());
         const float survival_draw = random.next();
         if (!bounce) break;
         const Vector direction = surface.frame.to_world(bounce->incoming);
@@ -84,10 +83,11 @@ void require_findable_light(const Scene& scene, int max_depth) {
     for (const Shape& shape : scene.shapes) {
         const Material& material = scene.materials[shape.material];
         if (is_specular(material.bsdf))
-            throw InputError(scene.name, "cannot be path traced: it has a point light and a " +
-                                             std::string(material_kind(material)) + " (\"" + material.id +
-                                             "\"), and no path from the camera can find a point by a mirror or through "
-                                             "glass, so all its caustics would be missing; use ppm, also for a reference");
+            throw InputError(scene.name,
+                             "cannot be path traced: it has a point light and a " +
+                                 std::string(material_kind(material)) + " (\"" + material.id +
+                                 "\"), and no path from the camera can find a point by a mirror or through "
+                                 "glass, so all its caustics would be missing; use ppm, also for a reference");
     }
 }
 
@@ -98,13 +98,13 @@ public:
         require_findable_light(context.scene, max_depth_);
     }
 
-    void run_pass(std::uint64_t pass, const PhotonPass&, const StageListener& enter) override {
+    void run_pass(std::uint64_t pass, const PhotonSupply&, const StageListener& enter) override {
         enter(Stage::Trace);
         add_paths(pass, sums_);
         ++passes_;
     }
 
-    Image estimate(const StageListener& enter) override {
+    Image estimate(const PhotonSupply&, const StageListener& enter) override {
         enter(Stage::Trace);
         if (passes_ > 0) return image_of(sums_, 1.0 / static_cast<double>(passes_), true);
         std::vector<PathSample> once(sums_.size());

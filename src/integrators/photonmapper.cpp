@@ -9,12 +9,12 @@ namespace photonlab {
 
 namespace {
 
-/// One of the two maps: its photons, and how far around each hit point it is searched.
-struct MapOfPasses {
-    std::vector<Photon> photons;  ///< of all passes, in their order
-    std::vector<double> radii;    ///< one a hit point, unit box: of the last gather; mode `radius`: fixed
-    double max_radius = 0.0;      ///< mode `nearest`, unit box
-    std::size_t k = 0;            ///< mode `nearest`
+/// How far around each hit point one of the two maps is searched.
+struct Search {
+    std::vector<double> radii;          ///< one a hit point, unit box: of the last gather; mode `radius`: fixed
+    std::vector<std::uint32_t> counts;  ///< photons that each hit point found in the last gather
+    double max_radius = 0.0;            ///< mode `nearest`, unit box
+    std::size_t k = 0;                  ///< mode `nearest`
 };
 
 class PhotonMapping : public Integrator {
@@ -32,6 +32,9 @@ public:
         const std::size_t points = context.hit_points.points.size();
         global_.radii.assign(points, global_.max_radius);
         caustic_.radii.assign(points, caustic_.max_radius);
+        global_.counts.assign(points, 0);
+        caustic_.counts.assign(points, 0);
+        radiance_.assign(points, ColorD(0.0));
         if (settings.mode == GatherMode::Nearest) return;
         for (std::size_t i = 0; i < points; ++i) {
             global_.radii[i] = initial_radius(settings, context, i);
@@ -39,36 +42,45 @@ public:
         }
     }
 
-    void run_pass(std::uint64_t pass, const PhotonPass& photons, const StageListener& enter) override {
-        enter(Stage::Build);
-        for (const Photon& photon : photons.photons)
-            (photon.caustic ? caustic_ : global_).photons.push_back(photon);
-        paths_emitted_ += photons.paths_emitted;
+    void run_pass(std::uint64_t pass, const PhotonSupply&, const StageListener& enter) override {
         enter(Stage::Direct);
         direct_.run_pass(pass);
     }
 
-    Image estimate(const StageListener& enter) override {
+    Image estimate(const PhotonSupply& photons, const StageListener& enter) override {
         enter(Stage::Direct);
         std::vector<Color> direct = direct_.layer();
-        report_.map_bytes = 0;
-        report_.nonfinite = 0;
+        enter(Stage::Gather);
+        report_.map_bytes = photons.bytes_of_all_passes();
+        report_.nonfinite = photons.global_map().nonfinite() + photons.caustic_map().nonfinite();
         report_.photons_gathered = 0;
-        std::vector<ColorD> radiance(context_.hit_points.points.size(), ColorD(0.0));
-        gather(global_, radiance, enter);
-        gather(caustic_, radiance, enter);
-        const double paths = static_cast<double>(std::max<std::uint64_t>(1, paths_emitted_));
+        std::fill(radiance_.begin(), radiance_.end(), ColorD(0.0));
+        gather(photons.global_map(), global_);
+        gather(photons.caustic_map(), caustic_);
+        scale_ =
+            context_.scene.total_power / static_cast<double>(std::max<std::uint64_t>(1, photons.paths_of_all_passes()));
         return make_layers(context_.hit_points, settings_.max_depth, std::move(direct),
-                           to_pixels(context_.hit_points, radiance, context_.scene.total_power / paths));
+                           to_pixels(context_.hit_points, radiance_, scale_));
     }
 
     /// Radii are those of the global map.
     IntegratorReport report() const override {
         IntegratorReport report = report_;
         const std::size_t points = context_.hit_points.points.size();
-        report.hit_point_bytes = points * (sizeof(HitPoint) + 2 * sizeof(double)) + direct_.bytes();
+        report.hit_point_bytes =
+            points * (sizeof(HitPoint) + 2 * (sizeof(double) + sizeof(std::uint32_t)) + sizeof(ColorD)) +
+            direct_.bytes();
         set_radii(report, global_.radii, context_.scene.unit_length);
         return report;
+    }
+
+    std::optional<GatherState> gather_state(std::size_t hit_point) const override {
+        GatherState state;
+        state.radius = global_.radii[hit_point] * context_.scene.unit_length;
+        state.photons = global_.counts[hit_point] + caustic_.counts[hit_point];
+        state.density = global_.counts[hit_point] / (pi * state.radius * state.radius);
+        state.radiance = radiance_[hit_point] * scale_;
+        return state;
     }
 
 private:
@@ -76,26 +88,21 @@ private:
     static constexpr double default_share_of_scene = 0.05;
 
     /// Adds what the photons of one map bring to every hit point.
-    void gather(MapOfPasses& source, std::vector<ColorD>& radiance, const StageListener& enter) {
-        if (source.photons.empty()) return;
-        enter(Stage::Build);
-        const PhotonMap map(source.photons);
-        report_.map_bytes += source.photons.capacity() * sizeof(Photon) + map.bytes();
-        report_.nonfinite += map.nonfinite();
-
-        enter(Stage::Gather);
+    void gather(const PhotonMap& map, Search& search) {
+        if (map.size() == 0) return;
         const std::vector<HitPoint>& points = context_.hit_points.points;
         const std::size_t blocks = block_count(points.size(), hit_points_per_block);
         std::vector<std::uint64_t> gathered(blocks, 0);
         parallel_for(blocks, context_.threads, [&](std::size_t block) {
             const BlockRange range = block_range(block, points.size(), hit_points_per_block);
             for (std::size_t i = range.begin; i < range.end; ++i) {
-                double& radius = source.radii[i];
-                const FluxSum sum = settings_.mode == GatherMode::Radius
-                                        ? gather_within(map, context_.scene, points[i], radius, settings_.kernel,
-                                                        settings_.max_depth)
-                                        : gather_nearest(map, points[i], source, radius);
-                radiance[i] += sum.flux() / (pi * radius * radius);
+                double& radius = search.radii[i];
+                const FluxSum sum =
+                    settings_.mode == GatherMode::Radius
+                        ? gather_within(map, context_.scene, points[i], radius, settings_.kernel, settings_.max_depth)
+                        : gather_nearest(map, points[i], search, radius);
+                radiance_[i] += sum.flux() / (pi * radius * radius);
+                search.counts[i] = static_cast<std::uint32_t>(sum.count());
                 gathered[block] += sum.count();
             }
         });
@@ -103,11 +110,10 @@ private:
     }
 
     /// The k nearest; `radius` becomes that of the disc to divide by.
-    FluxSum gather_nearest(const PhotonMap& map, const HitPoint& point, const MapOfPasses& source,
-                           double& radius) const {
+    FluxSum gather_nearest(const PhotonMap& map, const HitPoint& point, const Search& search, double& radius) const {
         FluxSum sum(context_.scene, point, settings_.max_depth);
         const NearestPhotons nearest = map.nearest(
-            point.position, point.normal, source.k, source.max_radius,
+            point.position, point.normal, search.k, search.max_radius,
             [&](const Photon& photon, double squared_distance, double squared_radius) {
                 sum.add(photon, kernel_weight(settings_.kernel, std::min(1.0, squared_distance / squared_radius)));
             });
@@ -118,9 +124,10 @@ private:
     const MethodSettings settings_;
     const IntegratorContext context_;
     DirectLight direct_;
-    MapOfPasses global_;
-    MapOfPasses caustic_;  // light that came by mirrors and glass alone; apart, since it is so much denser
-    std::uint64_t paths_emitted_ = 0;
+    Search global_;
+    Search caustic_;                // light that came by mirrors and glass alone; apart, since it is so much denser
+    std::vector<ColorD> radiance_;  // one a hit point, of the last gather, in shares of all emitted light
+    double scale_ = 0.0;            // what makes it radiance
     IntegratorReport report_;
 };
 

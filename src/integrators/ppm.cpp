@@ -27,11 +27,10 @@ public:
         }
     }
 
-    void run_pass(std::uint64_t pass, const PhotonPass& photons, const StageListener& enter) override {
+    void run_pass(std::uint64_t pass, const PhotonSupply& photons, const StageListener& enter) override {
         if (passes_ == 0) begin_at(pass);
         ++passes_;
-        enter(Stage::Build);
-        const PhotonMap map(photons.photons);
+        const PhotonMap& map = photons.pass_map();
         report_.map_bytes = std::max(report_.map_bytes, map.bytes());
         report_.nonfinite += map.nonfinite();
 
@@ -42,7 +41,7 @@ public:
             const BlockRange range = block_range(block, statistics_.size(), hit_points_per_block);
             for (std::size_t i = range.begin; i < range.end; ++i)
                 gathered[block] +=
-                    update(context_.hit_points.points[i], map, photons.paths_emitted, pass, statistics_[i]);
+                    update(context_.hit_points.points[i], map, photons.paths_of_pass(), pass, statistics_[i]);
         });
         for (const std::uint64_t count : gathered) report_.photons_gathered += count;
 
@@ -50,7 +49,7 @@ public:
         direct_.run_pass(pass);
     }
 
-    Image estimate(const StageListener& enter) override {
+    Image estimate(const PhotonSupply&, const StageListener& enter) override {
         enter(Stage::Direct);
         std::vector<Color> direct = direct_.layer();
         enter(Stage::Gather);
@@ -68,6 +67,17 @@ public:
         for (std::size_t i = 0; i < radii.size(); ++i) radii[i] = std::sqrt(statistics_[i].squared_radius);
         set_radii(report, radii, context_.scene.unit_length);
         return report;
+    }
+
+    std::optional<GatherState> gather_state(std::size_t hit_point) const override {
+        const GatherStatistics& at = statistics_[hit_point];
+        GatherState state;
+        state.radius = std::sqrt(at.squared_radius) * context_.scene.unit_length;
+        state.photons = at.count;
+        if (settings_.schedule == ScheduleName::Hachisuka)
+            state.density = at.count / (pi * state.radius * state.radius);
+        state.radiance = at.estimate * context_.scene.total_power;
+        return state;
     }
 
 private:

@@ -10,14 +10,14 @@ namespace photonlab {
 
 const std::vector<IntegratorKind>& integrator_kinds() {
     static const std::vector<IntegratorKind> kinds{
-        {"path", false, {"max_depth"}, make_path},
+        {"path", PhotonNeed::None, {"max_depth"}, make_path},
         {"photonmapper",
-         true,
+         PhotonNeed::AllPassesMaps,
          {"mode", "k", "radius", "max_radius", "caustic_k", "caustic_radius", "caustic_max_radius", "kernel", "direct",
           "direct_samples", "max_depth", "photons_per_pass"},
          make_photonmapper},
         {"ppm",
-         true,
+         PhotonNeed::PassMap,
          {"schedule", "alpha", "radius", "kernel", "direct", "direct_samples", "max_depth", "photons_per_pass"},
          make_ppm},
     };
@@ -59,8 +59,7 @@ void require_valid(const MethodSettings& settings) {
     require(is_length(settings.max_radius), "max_radius: expected \"auto\" or a length above 0 in scene units");
     require(settings.caustic_k >= 2,
             "caustic_k: expected at least 2 photons, got " + std::to_string(settings.caustic_k));
-    require(is_length(settings.caustic_radius),
-            "caustic_radius: expected \"auto\" or a length above 0 in scene units");
+    require(is_length(settings.caustic_radius), "caustic_radius: expected \"auto\" or a length above 0 in scene units");
     require(is_length(settings.caustic_max_radius),
             "caustic_max_radius: expected \"auto\" or a length above 0 in scene units");
     require(settings.direct_samples >= 1,

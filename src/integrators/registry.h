@@ -14,7 +14,7 @@ namespace photonlab {
 
 struct IntegratorKind {
     std::string_view name;
-    bool needs_photons;                      ///< false: run_pass() is given an empty pass, and none is traced
+    PhotonNeed needs;
     std::vector<std::string_view> settings;  ///< fields of MethodSettings that it uses, by their names
     std::unique_ptr<Integrator> (*make)(const MethodSettings&, const IntegratorContext&);
 };

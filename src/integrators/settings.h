@@ -51,15 +51,15 @@ struct MethodSettings {
     std::optional<double> max_radius = std::nullopt;  ///< photonmapper, nearest: scene units, > 0; empty: 5% of the
                                                       ///< scene's bounding radius
     int caustic_k = 120;                              ///< photonmapper, nearest: the same of the caustic map, >= 2
-    std::optional<double> caustic_radius = std::nullopt;      ///< photonmapper, radius: of the caustic map, scene units,
-                                                              ///< > 0; empty: as `radius`
-    std::optional<double> caustic_max_radius = std::nullopt;  ///< photonmapper, nearest: of the caustic map, scene units,
-                                                              ///< > 0; empty: a quarter of max_radius
-    Kernel kernel = Kernel::Disc;                     ///< ppm, photonmapper
-    DirectMode direct = DirectMode::Sampled;          ///< ppm, photonmapper
-    int direct_samples = 1;                           ///< shadow rays a hit point and pass, >= 1
-    int max_depth = -1;                               ///< edges from camera to light; -1 is unlimited
-    std::uint64_t photons_per_pass = 100'000;         ///< paths emitted a pass
+    std::optional<double> caustic_radius = std::nullopt;  ///< photonmapper, radius: of the caustic map, scene units,
+                                                          ///< > 0; empty: as `radius`
+    std::optional<double> caustic_max_radius = std::nullopt;  ///< photonmapper, nearest: of the caustic map, scene
+                                                              ///< units, > 0; empty: a quarter of max_radius
+    Kernel kernel = Kernel::Disc;                             ///< ppm, photonmapper
+    DirectMode direct = DirectMode::Sampled;                  ///< ppm, photonmapper
+    int direct_samples = 1;                                   ///< shadow rays a hit point and pass, >= 1
+    int max_depth = -1;                                       ///< edges from camera to light; -1 is unlimited
+    std::uint64_t photons_per_pass = 100'000;                 ///< paths emitted a pass
 };
 
 }  // namespace photonlab

@@ -41,6 +41,8 @@ struct PhotonSettings {
     int max_depth = -1;         ///< edges from camera to light, as in Mitsuba; a photon's own edges stay below it
     bool store_direct = false;  ///< also store photons that came straight from the light
     RandomPurpose purpose = RandomPurpose::PhotonPaths;  ///< a reference's half has its own
+
+    bool operator==(const PhotonSettings&) const = default;
 };
 
 /// Traces pass `pass` (counted from 1). A scene without light gives no photons and still counts its paths.

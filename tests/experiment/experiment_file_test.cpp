@@ -143,5 +143,34 @@ TEST_F(ExperimentFile, TheDemonstrationIsSound) {
     EXPECT_EQ(read_experiment(demo).runs.size(), 20u);
 }
 
+TEST_F(ExperimentFile, ScenesHaveRegionsAndProbes) {
+    const Experiment experiment = read(
+        "passes = 8\ndecomposition = true\n"
+        "scenes = [{ path = \"lamp.xml\", regions = { smooth = [1, 2, 30, 40] }, probes = { corner = [5, 6] } }]\n" +
+        ppm);
+    EXPECT_TRUE(experiment.decomposition);
+    ASSERT_EQ(experiment.scenes[0].regions.size(), 1u);
+    const Region& region = experiment.scenes[0].regions[0];
+    EXPECT_EQ(region.name, "smooth");
+    EXPECT_EQ((std::vector<int>{region.left, region.top, region.right, region.bottom}),
+              (std::vector<int>{1, 2, 30, 40}));
+    ASSERT_EQ(experiment.scenes[0].probes.size(), 1u);
+    EXPECT_EQ(experiment.scenes[0].probes[0].name, "corner");
+    EXPECT_EQ(experiment.scenes[0].probes[0].y, 6);
+    EXPECT_FALSE(read(least + ppm).decomposition);
+    EXPECT_EQ(read(least + ppm).runs[0].point, "box_ppm");
+
+    const auto with = [&](const std::string& what) {
+        return refusal("passes = 8\nscenes = [{ path = \"lamp.xml\", " + what + " }]\n" + ppm);
+    };
+    EXPECT_EQ(with("regions = { a = [1, 2, 3] }"), ":2: a: expected [left, top, right, bottom]");
+    EXPECT_EQ(with("regions = { a = [3, 2, 3, 4] }"), ":2: a: expected left < right and top < bottom");
+    EXPECT_EQ(with("regions = { image = [1, 2, 3, 4] }"), ":2: image: is the name of the whole image");
+    EXPECT_EQ(with("regions = { \"a b\" = [1, 2, 3, 4] }"), ":2: regions: \"a b\" is no name for a file");
+    EXPECT_EQ(with("probes = { a = [1] }"), ":2: a: expected [x, y]");
+    EXPECT_EQ(with("probes = [1, 2]"), ":2: probes: expected a table of names, each [x, y]");
+    EXPECT_EQ(refusal("decomposition = 1\n" + least + ppm), ":1: decomposition: expected true or false");
+}
+
 }  // namespace
 }  // namespace photonlab

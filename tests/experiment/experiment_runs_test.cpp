@@ -188,5 +188,71 @@ TEST_F(ExperimentRuns, ListsRunsWithTimeAndMemory) {
     EXPECT_NE(list.find("8 runs of 3 passes"), std::string::npos) << list;
 }
 
+// The sums of two seeds and the third one's image are the three images: what was kept is what ran.
+TEST_F(ExperimentRuns, KeepsSumsOverSeedsForADecomposition) {
+    run("decomposition = true\n");
+    const Image sum = read_exr(results() / "ensembles/walls_ppm/slot-01.exr");
+    const Image image = read_exr(results() / "runs/walls_ppm_seed-2/snapshots/pass-000003.exr");
+    EXPECT_EQ(*sum.find("pass-000003-gathered"), *image.find("gathered"));
+    EXPECT_EQ(*sum.find("emission"), *image.find("emission"));
+    const Json json = Json::parse(read_text_file(results() / "ensembles/walls_photons-only/ensemble.json"));
+    EXPECT_EQ(json.at("photons_carry_direct"), true);
+    EXPECT_EQ(json.at("passes"), Json({0, 1, 2, 3}));
+    EXPECT_EQ(json.at("scene"), "walls");
+
+    // More seeds do not redo the old ones, and a folder that was removed is made again.
+    EXPECT_EQ(run("decomposition = true\n").ran, 0u);
+    std::filesystem::remove_all(results() / "ensembles/walls_ppm");
+    EXPECT_EQ(run("decomposition = true\n").ran, 2u);
+    EXPECT_TRUE(std::filesystem::exists(results() / "ensembles/walls_ppm/slot-01.exr"));
+}
+
+TEST_F(ExperimentRuns, RunsThatShareTheirPhotonsRecordWhatTheyWouldAlone) {
+    run();
+    const std::vector<Row> together = read_csv(results() / "iterations.csv");
+    std::filesystem::remove_all(results());
+    for (const char* only : {"walls_ppm_*", "walls_nearest_*", "walls_photons-only_*", "walls_path_*"}) run("", only);
+    const std::vector<Row> alone = read_csv(results() / "iterations.csv");
+    ASSERT_EQ(together.size(), alone.size());
+    for (std::size_t i = 0; i < alone.size(); ++i)
+        for (const char* column : {"run", "pass", "component", "mse", "bias", "photons_stored", "photons_gathered",
+                                   "radius_mean", "map_bytes"})
+            EXPECT_EQ(together[i].at(column), alone[i].at(column)) << column;
+    const Json json = Json::parse(read_text_file(results() / "runs/walls_ppm_seed-1/run.json"));
+    EXPECT_EQ(json.at("runs_together"), 1);
+}
+
+TEST_F(ExperimentRuns, RecordsProbesAfterEveryPass) {
+    folder_.write("probed.toml",
+                  "passes = 3\nrecord = [2]\nphotons_per_pass = 400\n"
+                  "scenes = [{ path = \"walls/scene.xml\", probes = { wall = [6, 2], sky = [0, 0] } }]\n"
+                  "[[method]]\nintegrator = \"ppm\"\n[[method]]\nintegrator = \"photonmapper\"\n"
+                  "[[method]]\nintegrator = \"path\"\n");
+    const Experiment experiment = read_experiment(folder_ / "probed.toml");
+    run_experiment(experiment, prepare_experiment(experiment, results()), results());
+    const std::vector<Row> rows = read_csv(results() / "probes.csv");
+    std::map<std::string, std::vector<std::string>> passes;
+    for (const Row& row : rows) passes[row.at("run") + " " + row.at("probe")].push_back(row.at("pass"));
+    EXPECT_EQ(passes["walls_ppm_seed-1 wall"], (std::vector<std::string>{"1", "2", "3"}));
+    EXPECT_EQ(passes["walls_photonmapper_seed-1 wall"], (std::vector<std::string>{"0", "2", "3"}));
+    EXPECT_FALSE(passes.contains("walls_path_seed-1 wall"));
+    EXPECT_GT(std::stod(rows.back().at("radius")), 0.0);
+}
+
+TEST_F(ExperimentRuns, RefusesRegionsAndProbesOutsideTheImage) {
+    const auto refusal = [&](const std::string& what) {
+        folder_.write("outside.toml", "passes = 3\nscenes = [{ path = \"walls/scene.xml\", " + what +
+                                          " }]\n[[method]]\nintegrator = \"ppm\"\n");
+        const Experiment experiment = read_experiment(folder_ / "outside.toml");
+        return message_of([&] { prepare_experiment(experiment, results()); });
+    };
+    EXPECT_EQ(refusal("regions = { all = [0, 0, 12, 8] }"), "");
+    EXPECT_NE(
+        refusal("regions = { low = [0, 0, 12, 9] }").find("region low: expected pixels inside 12x8, got up to 12 9"),
+        std::string::npos);
+    EXPECT_NE(refusal("probes = { right = [12, 0] }").find("probe right: expected a pixel inside 12x8, got 12 0"),
+              std::string::npos);
+}
+
 }  // namespace
 }  // namespace photonlab

@@ -42,11 +42,28 @@ TEST(Records, WhatDoesNotApplyIsEmpty) {
     identity.settings.method.integrator = "path";
     RunState state;
     const Record path{identity, state, "total", std::nullopt, 0, 1.0};
-    for (const char* column :
-         {"mode", "schedule", "alpha", "k", "radius_rule", "radius_initial", "max_radius", "caustic_k",
-          "caustic_radius", "caustic_max_radius", "kernel", "direct",
-          "direct_samples", "photons_per_pass", "paths_emitted", "photons_stored", "photons_gathered", "map_bytes",
-          "radius_mean", "mse", "mse_unbiased", "reference_floor"})
+    for (const char* column : {"mode",
+                               "schedule",
+                               "alpha",
+                               "k",
+                               "radius_rule",
+                               "radius_initial",
+                               "max_radius",
+                               "caustic_k",
+                               "caustic_radius",
+                               "caustic_max_radius",
+                               "kernel",
+                               "direct",
+                               "direct_samples",
+                               "photons_per_pass",
+                               "paths_emitted",
+                               "photons_stored",
+                               "photons_gathered",
+                               "map_bytes",
+                               "radius_mean",
+                               "mse",
+                               "mse_unbiased",
+                               "reference_floor"})
         EXPECT_EQ(cell(path, column), "") << column;
     EXPECT_EQ(cell(path, "max_depth"), "-1");
     EXPECT_EQ(cell(path, "nonfinite"), "0");

@@ -26,11 +26,11 @@ protected:
     Outcome run(MethodSettings method, std::vector<std::uint64_t> estimated, int threads = 1) {
         method.photons_per_pass = 500;
         Outcome outcome;
-        outcome.final_state = run_method(scene_, hit_points_, {method, 3, 6, threads, std::move(estimated)},
-                                         [&](const RunState& state, const Image& image) {
-                                             outcome.states[state.pass] = state;
-                                             outcome.last = image;
-                                         });
+        outcome.final_state = run_methods(scene_, hit_points_, {{method, 3, 6, threads, std::move(estimated)}},
+                                          [&](std::size_t, const RunState& state, const Image& image) {
+                                              outcome.states[state.pass] = state;
+                                              outcome.last = image;
+                                          })[0];
         return outcome;
     }
     std::vector<MethodSettings> methods() {
@@ -96,6 +96,96 @@ TEST_F(Runner, TheInitialRadiusIsTheOneThatWasGiven) {
     const Outcome outcome = run(method, {6});
     EXPECT_NEAR(outcome.final_state.initial_radius.value(), 0.75, 1e-9);
     EXPECT_LT(outcome.final_state.report.radius_mean.value(), 0.75);
+}
+
+TEST_F(Runner, MethodsThatShareTheirPhotonsGiveTheBitsThatTheyGiveAlone) {
+    std::vector<RunSettings> together;
+    for (MethodSettings method : methods()) {
+        method.photons_per_pass = 500;
+        if (method.integrator == "path" || method.direct == DirectMode::Photons) continue;
+        together.push_back({method, 3, 6, 1, {0, 2, 6}});
+        method.alpha = 0.4;
+        method.radius = 0.3;
+        together.push_back({method, 3, 6, 1, {0, 2, 6}});
+    }
+    ASSERT_EQ(together.size(), 6u);
+    std::vector<Image> images(together.size());
+    const std::vector<RunState> states =
+        run_methods(scene_, hit_points_, together,
+                    [&](std::size_t method, const RunState&, const Image& image) { images[method] = image; });
+    for (std::size_t i = 0; i < together.size(); ++i) {
+        const Outcome alone = run(together[i].method, {0, 2, 6});
+        expect_same_bits(images[i], alone.last);
+        EXPECT_EQ(states[i].photons_stored, alone.final_state.photons_stored);
+        EXPECT_EQ(states[i].report.photons_gathered, alone.final_state.report.photons_gathered);
+        EXPECT_EQ(states[i].report.map_bytes, alone.final_state.report.map_bytes);
+    }
+}
+
+// Each is charged in full for what it shares.
+TEST_F(Runner, MethodsThatShareTheirPhotonsAreAllChargedForThem) {
+    MethodSettings ppm;
+    ppm.photons_per_pass = 500;
+    MethodSettings mapper = ppm;
+    mapper.integrator = "photonmapper";
+    const std::vector<RunState> states =
+        run_methods(scene_, hit_points_, {{ppm, 3, 6, 1, {6}}, {ppm, 3, 6, 1, {6}}, {mapper, 3, 6, 1, {6}}},
+                    [](std::size_t, const RunState&, const Image&) {});
+    EXPECT_GT(states[0].times.of(Stage::Trace), 0.0);
+    EXPECT_GT(states[0].times.of(Stage::Build), 0.0);
+    for (const RunState& state : states) EXPECT_EQ(state.times.of(Stage::Trace), states[0].times.of(Stage::Trace));
+    EXPECT_EQ(states[1].times.of(Stage::Build), states[0].times.of(Stage::Build));
+    EXPECT_GT(states[2].times.of(Stage::Build), 0.0);
+}
+
+TEST_F(Runner, OnlyMethodsWithTheSamePhotonsAndPassesCanShareThem) {
+    const RunSettings settings{MethodSettings{}, 3, 6, 1, {6}};
+    const auto can_share = [&](const std::function<void(RunSettings&)>& change) {
+        RunSettings other = settings;
+        change(other);
+        return can_share_photons(settings, other);
+    };
+    EXPECT_TRUE(can_share([](RunSettings& other) { other.method.alpha = 0.3; }));
+    EXPECT_TRUE(can_share([](RunSettings& other) { other.method.integrator = "photonmapper"; }));
+    EXPECT_FALSE(can_share([](RunSettings& other) { other.method.integrator = "path"; }));
+    EXPECT_FALSE(can_share([](RunSettings& other) { other.method.photons_per_pass = 5; }));
+    EXPECT_FALSE(can_share([](RunSettings& other) { other.method.max_depth = 3; }));
+    EXPECT_FALSE(can_share([](RunSettings& other) { other.method.direct = DirectMode::Photons; }));
+    EXPECT_FALSE(can_share([](RunSettings& other) { other.seed = 4; }));
+    EXPECT_FALSE(can_share([](RunSettings& other) { other.passes = 7; }));
+    EXPECT_FALSE(can_share([](RunSettings& other) { other.estimated = {1, 6}; }));
+}
+
+TEST_F(Runner, TellsWhatIsGatheredAtAHitPoint) {
+    for (const char* integrator : {"ppm", "photonmapper"}) {
+        MethodSettings method;
+        method.integrator = integrator;
+        method.radius = 0.5;
+        method.photons_per_pass = 500;
+        std::vector<std::uint64_t> passes;
+        GatherState last;
+        Image image;
+        std::size_t hit_point = 40;
+        run_methods(
+            scene_, hit_points_, {{method, 3, 6, 1, {0, 2, 6}}},
+            [&](std::size_t, const RunState&, const Image& estimated) { image = estimated; }, [](std::uint64_t) {},
+            [&](std::size_t, std::uint64_t pass, const Integrator& running) {
+                passes.push_back(pass);
+                last = running.gather_state(hit_point).value();
+            });
+        EXPECT_EQ(passes, integrator == std::string("ppm") ? (std::vector<std::uint64_t>{1, 2, 3, 4, 5, 6})
+                                                           : (std::vector<std::uint64_t>{0, 2, 6}));
+        // One hit point a pixel here, of weight 1.
+        const HitPoint& point = hit_points_.points[hit_point];
+        EXPECT_FLOAT_EQ(static_cast<float>(last.radiance.x), image.find(gathered_layer)->at(point.pixel).x)
+            << integrator;
+        EXPECT_GT(last.photons, 0.0);
+        EXPECT_NEAR(last.density.value(), last.photons / (pi * last.radius * last.radius), 1e-9 * *last.density);
+        if (integrator == std::string("ppm"))
+            EXPECT_LT(last.radius, 0.5);
+        else
+            EXPECT_NEAR(last.radius, 0.5, 1e-9);
+    }
 }
 
 TEST(StageClock, CountsOnlyBetweenEnterAndStop) {

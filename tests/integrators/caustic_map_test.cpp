@@ -86,9 +86,8 @@ TEST_F(CausticMap, SearchesItsOwnNumberOfPhotons) {
     const PhotonMap caustic(caustic_);
     const auto nearest = [&](const PhotonMap& map, const HitPoint& point, std::size_t k) {
         FluxSum sum(scene_, point, -1);
-        const NearestPhotons found =
-            map.nearest(point.position, point.normal, k, global_radius / scene_.unit_length,
-                        [&](const Photon& photon, double, double) { sum.add(photon, 1.0); });
+        const NearestPhotons found = map.nearest(point.position, point.normal, k, global_radius / scene_.unit_length,
+                                                 [&](const Photon& photon, double, double) { sum.add(photon, 1.0); });
         return sum.flux() / (pi * found.squared_radius);
     };
     expect_layer(gathered({.mode = GatherMode::Nearest,

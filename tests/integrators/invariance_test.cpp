@@ -173,14 +173,14 @@ TEST(Invariance, LookingBeforeTheFirstPassShowsEmissionAndDirectLightAndChangesN
     const Scene scene = build_scene(changed_room(1.0));
     const HitPoints hit_points = trace_hit_points(scene, 1, 1);
     for (const Method& method : methods()) {
-        const auto integrator = make_integrator(method.settings, {scene, hit_points});
-        const Image before = integrator->estimate(no_listener);
+        MethodWithPhotons run(method.settings, {scene, hit_points});
+        const Image before = run.estimate();
         EXPECT_EQ(mean_of(before, gathered_layer), ColorD(0.0)) << method.name;
         EXPECT_EQ(mean_of(before, direct_layer).x > 0.0, method.settings.direct == DirectMode::Sampled) << method.name;
         for (std::uint64_t pass = 1; pass <= 2; ++pass)
-            integrator->run_pass(pass, trace_photons(scene, photon_settings(method.settings, 1), pass, 1), no_listener);
-        expect_same_bits(render(scene, hit_points, method.settings, {.passes = 2}).image,
-                         integrator->estimate(no_listener), 1.0, method.name);
+            run.run_pass(pass, trace_photons(scene, photon_settings(method.settings, 1), pass, 1));
+        expect_same_bits(render(scene, hit_points, method.settings, {.passes = 2}).image, run.estimate(), 1.0,
+                         method.name);
     }
 }
 

@@ -35,14 +35,14 @@ TEST(ProgressivePhotonMapping, IsTheShrinkingFluxOfItsPaper) {
     ASSERT_EQ(hit_points.points.size(), 1u);
     for (const double alpha : {0.1, 0.5, 0.7, 0.95, 1.0}) {
         const MethodSettings method = progressive(ScheduleName::Hachisuka, alpha);
-        const auto integrator = make_integrator(method, {scene, hit_points});
+        MethodWithPhotons run(method, {scene, hit_points});
         double squared_radius = gather_radius * gather_radius / (scene.unit_length * scene.unit_length);
         double count = 0.0;
         ColorD flux(0.0);
         std::uint64_t paths = 0;
         int empty_passes = 0;
         for (std::uint64_t pass = 1; pass <= 200; ++pass) {
-            EXPECT_NEAR(*integrator->report().radius_mean, std::sqrt(squared_radius) * scene.unit_length, 1e-9);
+            EXPECT_NEAR(*run.integrator->report().radius_mean, std::sqrt(squared_radius) * scene.unit_length, 1e-9);
             const PhotonPass photons = trace_photons(scene, photon_settings(method, 1), pass, 1);
             const FluxSum found = gather_within(PhotonMap(photons.photons), scene, hit_points.points[0],
                                                 std::sqrt(squared_radius), Kernel::Disc, -1);
@@ -55,9 +55,9 @@ TEST(ProgressivePhotonMapping, IsTheShrinkingFluxOfItsPaper) {
                 squared_radius *= shrink;
                 count += alpha * m;
             }
-            integrator->run_pass(pass, photons, no_listener);
+            run.run_pass(pass, photons);
             const ColorD radiance = flux * (scene.total_power / (pi * squared_radius * static_cast<double>(paths)));
-            const ColorD estimate = mean_of(integrator->estimate(no_listener), gathered_layer);
+            const ColorD estimate = mean_of(run.estimate(), gathered_layer);
             for (int c = 0; c < 3; ++c)
                 ASSERT_NEAR(estimate[c], radiance[c], 1e-6 * radiance[c]) << alpha << " pass " << pass;
         }
@@ -94,9 +94,9 @@ TEST(ProgressivePhotonMapping, WithAlphaOneIsTheAverageOfPhotonMapsOfOneRadius) 
             method.integrator = "photonmapper";
             std::vector<ColorD> average(400, ColorD(0.0));
             for (std::uint64_t pass = 1; pass <= passes; ++pass) {
-                const auto integrator = make_integrator(method, {scene, hit_points});
-                integrator->run_pass(1, trace_photons(scene, photon_settings(method, 1), pass, 1), no_listener);
-                const Image image = integrator->estimate(no_listener);
+                MethodWithPhotons run(method, {scene, hit_points});
+                run.run_pass(1, trace_photons(scene, photon_settings(method, 1), pass, 1));
+                const Image image = run.estimate();
                 for (std::size_t i = 0; i < average.size(); ++i)
                     average[i] += ColorD(image.find(gathered_layer)->at(i)) / static_cast<double>(passes);
             }

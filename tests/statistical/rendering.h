@@ -35,22 +35,41 @@ inline PhotonSettings photon_settings(const MethodSettings& method, std::uint64_
             .store_direct = method.direct == DirectMode::Photons};
 }
 
+/// An integrator and its photons.
+struct MethodWithPhotons {
+    std::unique_ptr<Integrator> integrator;
+    PhotonSupply photons;
+
+    MethodWithPhotons(const MethodSettings& method, const IntegratorContext& context)
+        : integrator(make_integrator(method, context)) {}
+
+    void run_pass(std::uint64_t pass, PhotonPass traced) {
+        photons.begin_pass(std::move(traced));
+        photons.index_pass();
+        photons.add_pass();
+        integrator->run_pass(pass, photons, no_listener);
+    }
+
+    Image estimate() {
+        photons.index_all_passes();
+        return integrator->estimate(photons, no_listener);
+    }
+};
+
 inline Rendering render(const Scene& scene, const HitPoints& hit_points, const MethodSettings& method,
                         const RenderOptions& options) {
-    const auto integrator =
-        make_integrator(method, {scene, hit_points, options.seed, options.threads, options.path_purpose});
-    const bool needs_photons = find_integrator_kind(method.integrator).needs_photons;
+    MethodWithPhotons run(method, {scene, hit_points, options.seed, options.threads, options.path_purpose});
+    const bool needs_photons = find_integrator_kind(method.integrator).needs != PhotonNeed::None;
     Rendering result;
     for (std::uint64_t pass = 1; pass <= options.passes; ++pass) {
-        if (const auto radius = integrator->report().radius_mean) result.radii.push_back(*radius);
-        const PhotonPass photons =
-            needs_photons ? trace_photons(scene, photon_settings(method, options.seed), pass, options.threads)
-                          : PhotonPass{};
-        integrator->run_pass(pass, photons, no_listener);
-        if (options.estimate_every_pass) result.image = integrator->estimate(no_listener);
+        if (const auto radius = run.integrator->report().radius_mean) result.radii.push_back(*radius);
+        run.run_pass(pass, needs_photons
+                               ? trace_photons(scene, photon_settings(method, options.seed), pass, options.threads)
+                               : PhotonPass{});
+        if (options.estimate_every_pass) result.image = run.estimate();
     }
-    if (!options.estimate_every_pass) result.image = integrator->estimate(no_listener);
-    result.report = integrator->report();
+    if (!options.estimate_every_pass) result.image = run.estimate();
+    result.report = run.integrator->report();
     return result;
 }
 
