@@ -57,8 +57,9 @@ void add_reference_command(CLI::App& app) {
                         "path, or ppm where paths from the camera do not find the light [path]");
     command->add_option("--photons", settings.photons_per_pass, "ppm: paths emitted a pass [1000000]");
     command->add_option("--alpha", settings.alpha, "ppm: of the schedule of Knaus and Zwicker [2/3]");
-    command->add_option("--samples", settings.samples,
-                        "to add to each half: paths a sample position, or passes of ppm [1024]")
+    command
+        ->add_option("--samples", settings.samples,
+                     "to add to each half: paths a sample position, or passes of ppm [1024]")
         ->check(CLI::Range(1u, 0x7fffffffu));
     command->add_option("--resolution", options->resolution, "WIDTHxHEIGHT in place of the scene file's");
     command->add_option("--samples-per-pixel", settings.samples_per_pixel, "sample positions, a perfect square [1]");
@@ -67,6 +68,8 @@ void add_reference_command(CLI::App& app) {
     command->add_option("--seed", settings.seed, "of all random numbers [1]");
     command->add_option("--threads", settings.threads, "threads to use [all]; the image does not depend on it")
         ->check(CLI::Range(1, 1024));
+    command->add_flag("--picture-only", settings.picture_only,
+                      "store the picture without its layers, a third of the size; nothing can be added to it");
     command->footer(
         "Calling it again adds to what is there. Example:\n  photonlab reference scenes/cornell-box/scene.xml -o "
         "reference/cornell-box --resolution 128x128 --samples 4096");

@@ -107,6 +107,8 @@ public:
             throw InputError(file_.string(), fmt::format("was made with {}; it cannot be continued with {}",
                                                          stored_method, describe_method(method_)));
         stored_samples_ = read_number(file_, metadata, samples_attribute);
+        if (!stored_.find(gathered_layer))
+            throw InputError(file_.string(), "holds the picture without its layers; nothing can be added to it");
     }
 
     std::uint64_t samples() const { return stored_samples_ + new_samples_; }
@@ -172,6 +174,12 @@ Json noise_floor(const Image& half_a, const Image& half_b) {
     return floor;
 }
 
+/// The sum of the layers, as the only one.
+Image picture_of(const Image& image) {
+    const std::vector<ColorD> sum = total(image);
+    return {image.width, image.height, {{std::string(total_component), {sum.begin(), sum.end()}}}};
+}
+
 double stored_seconds(const std::filesystem::path& folder) {
     return std::filesystem::exists(folder / "reference.json") ? read_reference_json(folder).value("seconds", 0.0) : 0.0;
 }
@@ -206,9 +214,9 @@ Json add_reference_samples(const Scene& scene, const ReferenceSettings& settings
     GrowingHalf half_b = half(half_purposes[1]);
 
     Json json;
-    const auto save = [&] {
-        const Image image_a = half_a.mean();
-        const Image image_b = half_b.mean();
+    const auto save = [&](bool picture_only) {
+        const Image image_a = picture_only ? picture_of(half_a.mean()) : half_a.mean();
+        const Image image_b = picture_only ? picture_of(half_b.mean()) : half_b.mean();
         const std::string checksum_a = half_a.save(image_a);
         const std::string checksum_b = half_b.save(image_b);
         const ProgramVersion program = program_version();
@@ -244,11 +252,11 @@ Json add_reference_samples(const Scene& scene, const ReferenceSettings& settings
         const auto now = std::chrono::steady_clock::now();
         const bool is_time = std::chrono::duration<double>(now - saved).count() >= settings.seconds_between_saves;
         if (is_time && half_a.samples() == half_b.samples()) {
-            save();
+            save(false);
             saved = std::chrono::steady_clock::now();
         }
     }
-    save();
+    save(settings.picture_only);
     return json;
 }
 

@@ -37,6 +37,7 @@ struct ReferenceSettings {
     std::uint64_t seed = 1;  ///< must be the one that is there already, when adding
     int threads = 1;
     double seconds_between_saves = 30.0;
+    bool picture_only = false;  ///< store the sum of the layers alone, a third of the size; nothing can be added to it
 };
 
 /// Called after every sample of a half: how many of how many are done.

@@ -165,6 +165,26 @@ TEST_F(ReferenceStore, AnImageOfAnotherRendererServesAsAReference) {
               (folder_ / "foreign.exr").string() + ": this reference is 12x8, the image 13x8");
 }
 
+TEST_F(ReferenceStore, ThePictureAloneJudgesTheWholeImage) {
+    add_reference_samples(scene_, settings(12), folder_ / "layers");
+    add_reference_samples(scene_, settings(11), folder_ / "picture");
+    ReferenceSettings last = settings(1);
+    last.picture_only = true;
+    add_reference_samples(scene_, last, folder_ / "picture");
+    const Reference layers = load_reference(folder_ / "layers", subject());
+    const Reference picture = load_reference(folder_ / "picture", subject());
+    EXPECT_EQ(picture.half_a.layers.size(), 1u);
+    EXPECT_NEAR(*picture.floor_mse, *layers.floor_mse, 1e-5 * *layers.floor_mse);
+    const Image& judged = layers.half_a;
+    EXPECT_NEAR(judge(judged, picture, "total", false)->mse, judge(judged, layers, "total", false)->mse,
+                1e-4 * judge(judged, layers, "total", false)->mse);
+    EXPECT_FALSE(judge(judged, picture, "gathered", false).has_value());
+    EXPECT_NE(message_of([&] {
+                  add_reference_samples(scene_, settings(1), folder_ / "picture");
+              }).find("half_a.exr: holds the picture without its layers; nothing can be added to it"),
+              std::string::npos);
+}
+
 TEST_F(ReferenceStore, AFolderWithoutOneIsRefused) {
     EXPECT_NE(message_of([&] { load_reference(folder_.path(), subject()); }).find("this is no reference"),
               std::string::npos);
