@@ -1,0 +1,76 @@
+"""Errors at equal seconds are those of the curve through the records, and nothing is made up outside of them."""
+
+import csv
+import tempfile
+import unittest
+from pathlib import Path
+
+import synthetic
+
+try:
+    import equal_time
+    from test_strip import layered, write_exr
+except ImportError as error:
+    raise unittest.SkipTest(f"{error} (Debian: python3-openimageio)")
+
+
+class EqualTime(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.results = Path(folder.name)
+
+    def write(self, reference=None):
+        """A pass of ppm takes 0.25 s (and the first 0.01 s more), one of path 1 s; errors fall as 1 / n and 1 / n^2."""
+        made = synthetic.rows(lambda seed, number, component: 1e-2 / max(1, number), seeds=[1, 2])
+        path = synthetic.rows(lambda seed, number, component: 1e-2 / max(1, number) ** 2, seeds=[1, 2],
+                              integrator="path", schedule="", alpha="", kernel="", direct="", direct_samples="",
+                              photons_per_pass="", radius_rule="", radius_initial="")
+        for row in path:
+            row["seconds"] = str(float(row["pass"]))
+        synthetic.write_csv(self.results, made + path)
+        for run in sorted({row["run"] for row in made + path}):
+            folder = synthetic.write_run(self.results, run, [16, 64], reference, working_directory=str(self.results))
+            for number in [16, 64]:
+                write_exr(folder / f"snapshots/pass-{number:06}.exr", layered(1.0, 0.5))
+
+    def table(self):
+        with open(self.results / "equal-time.csv", newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def test_errors_are_interpolated_on_logarithmic_axes(self):
+        self.write()
+        code, _, errors = synthetic.run(equal_time, self.results)
+        self.assertEqual((code, errors), (0, ""))
+        rows = [row for row in self.table() if row["component"] == "total"]
+        # Both reach 1 s (path's first pass) to 16.01 s (ppm's last).
+        self.assertEqual(sorted({float(row["seconds"]) for row in rows}), [1, 2, 4, 8, 16])
+        for row in rows:
+            seconds = float(row["seconds"])
+            if row["method"] == "PPM":
+                expected = 1e-2 / ((seconds - 0.01) / 0.25)
+                self.assertAlmostEqual(float(row["mse"]) / expected, 1, delta=0.01)
+            else:
+                self.assertAlmostEqual(float(row["mse"]) / (1e-2 / seconds ** 2), 1, delta=1e-9)
+                self.assertAlmostEqual(float(row["pass"]), seconds)
+
+    def test_pictures_are_of_the_nearest_pass(self):
+        self.write("half.exr")
+        write_exr(self.results / "half.exr", layered(1.0, 0.4))
+        code, output, errors = synthetic.run(equal_time, self.results)
+        self.assertEqual((code, errors), (0, ""))
+        self.assertIn("equal-time-cornell-box.png", output)
+
+    def test_a_budget_outside_the_records_has_no_error(self):
+        self.write()
+        synthetic.run(equal_time, self.results)
+        import records
+        rows = records.read_records(self.results)
+        curve = equal_time.curve_of(rows[rows["method"] == "PPM"], "total")
+        self.assertIsNone(equal_time.at_budget(curve, 0.1))
+        self.assertIsNone(equal_time.at_budget(curve, 100))
+        self.assertIsNotNone(equal_time.at_budget(curve, 3.0))
+
+
+if __name__ == "__main__":
+    unittest.main()
