@@ -1,0 +1,294 @@
+"""Tells bias from variance: what is left of a method's error when its noise is averaged away, and the noise itself.
+
+Input are the sums of images over independent seeds that `photonlab run` keeps for an experiment with
+`decomposition = true` (RESULTS/ensembles), in up to 16 groups, and the reference's halves A and B. With group means y_g of
+m_g seeds each, G groups, K seeds and their mean xbar:
+
+    variance (of one seed) = mean over pixels and channels of  sum_g m_g (y_g - xbar)^2 / (G - 1)
+    squared bias           = mean( (xbar - A)(xbar - B) ) - variance / K
+    MSE                    = squared bias + variance,  exactly the mean over seeds of mean( (x - A)(x - B) )
+
+All three are unbiased, so what is near zero can come out below it; the sign is kept. A reference of one image has no halves:
+its own noise is then part of the squared bias.
+
+Only inner products of the deviations y_g - (A + B) / 2 enter, so each region needs one G x G matrix a pass, and leaving out
+a group costs nothing. Standard errors are those of the jackknife over groups (for groups of unequal size after Busing, Meijer
+and van der Leeden 1999, "Delete-m Jackknife for Unequal m"); the reference's noise is not in them. Where a bias is lost in
+noise they are too large, by a factor of up to the root of 2.
+"""
+
+import argparse
+import csv
+import json
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+try:
+    import numpy
+    import OpenImageIO
+    import pictures
+    import records
+except ImportError as error:
+    print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas and OpenImageIO (on Debian: "
+          "/usr/bin/python3 with python3-pandas and python3-openimageio)", file=sys.stderr)
+    sys.exit(2)
+
+QUANTITIES = ["variance", "squared_bias", "mse"]
+WHOLE = "image"    # the region of all pixels
+
+
+@dataclass
+class Ensemble:
+    """The sums of one point of an experiment: a method with its settings, on a scene."""
+    folder: Path
+    description: dict    # ensemble.json
+    seeds: list          # a list a group
+    layers: list         # {layer: array (height, width, 3)} a group: means over its seeds
+
+    @property
+    def point(self):
+        return self.description["point"]
+
+    @property
+    def counts(self):
+        """Seeds in each group."""
+        return numpy.array([len(group) for group in self.seeds], dtype=float)
+
+    def component(self, group, number, component):
+        """A group's mean image of a component after pass `number`."""
+        layers = self.layers[group]
+        parts = {"emission": ["emission"], "direct": [f"pass-{number:06}-direct"],
+                 "gathered": [f"pass-{number:06}-gathered"],
+                 "total": ["emission", f"pass-{number:06}-direct", f"pass-{number:06}-gathered"]}[component]
+        return sum(layers[part] for part in parts)
+
+
+def read_slot(file):
+    """(seeds, {layer: mean over them}) of one file of sums."""
+    image = OpenImageIO.ImageInput.open(str(file))
+    if image is None:
+        raise records.RecordError(f"{file}: cannot be read as an image: {OpenImageIO.geterror()}")
+    spec = image.spec()
+    pixels = image.read_image(OpenImageIO.FLOAT)
+    image.close()
+    seeds = str(spec.getattribute("photonlab.seeds") or "").split()
+    if not seeds or pixels is None:
+        raise records.RecordError(f"{file}: expected sums of images with the attribute photonlab.seeds")
+    places = {}
+    for index, name in enumerate(spec.channelnames):
+        layer, _, channel = name.rpartition(".")
+        if layer:
+            places.setdefault(layer, {})[channel] = index
+    return [int(seed) for seed in seeds], {
+        layer: pixels[:, :, [channels[channel] for channel in "RGB"]].astype(numpy.float64) / len(seeds)
+        for layer, channels in places.items()}
+
+
+def read_ensemble(folder):
+    file = Path(folder) / "ensemble.json"
+    try:
+        description = json.loads(file.read_text(encoding="utf-8"))
+        for key in ["point", "scene", "passes", "regions", "reference", "photons_carry_direct"]:
+            description[key]
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise records.RecordError(f"{file}: is not the description of an ensemble: {error}") from error
+    seeds, layers = [], []
+    for slot in sorted(Path(folder).glob("slot-*.exr")):
+        own_seeds, own_layers = read_slot(slot)
+        expected = {"emission", *(f"pass-{number:06}-{layer}" for number in description["passes"]
+                                  for layer in ["direct", "gathered"])}
+        if set(own_layers) != expected:
+            raise records.RecordError(f"{slot}: expected the layers of the passes in ensemble.json")
+        seeds.append(own_seeds)
+        layers.append(own_layers)
+    if len(seeds) < 2:
+        raise records.RecordError(f"{folder}: expected at least two seeds, found {len(seeds)}")
+    return Ensemble(Path(folder), description, seeds, layers)
+
+
+def read_ensembles(results):
+    """Ensembles of a results folder, one after another: only one is in memory at a time."""
+    folders = sorted((Path(results) / "ensembles").glob("*/"))
+    if not folders:
+        raise records.RecordError(f"{results}: has no ensembles; expected an experiment with decomposition = true")
+    for folder in folders:
+        yield read_ensemble(folder)
+
+
+def read_halves(ensemble, results, component):
+    """[A, B] or [image] of the reference's component; None where it does not apply."""
+    carried = ensemble.description["photons_carry_direct"]
+    if carried and component == "direct":
+        return None
+    files = records.reference_files(results, ensemble.description)
+    halves = [pictures.read_component(file, component, carried) for file in files]
+    return halves if halves and all(half is not None for half in halves) else None
+
+
+def regions_of(ensemble, shape):
+    """{name: (slice of rows, slice of columns)}, the whole image first."""
+    regions = {WHOLE: (slice(0, shape[0]), slice(0, shape[1]))}
+    for name, (left, top, right, bottom) in ensemble.description["regions"].items():
+        regions[name] = (slice(top, bottom), slice(left, right))
+    return regions
+
+
+@dataclass
+class Moments:
+    """What is needed of a region after a pass: inner products of the groups' deviations from the reference, as means over
+    pixels and channels, and the reference's own variance (0 when it is not known)."""
+    gram: numpy.ndarray
+    counts: numpy.ndarray
+    floor: float
+    pixels: int
+
+    def without(self, group):
+        kept = numpy.arange(len(self.counts)) != group
+        return Moments(self.gram[numpy.ix_(kept, kept)], self.counts[kept], self.floor, self.pixels)
+
+
+def moments_of(ensemble, results, component):
+    """{(pass, region): Moments}, and the floor's meaning: None for a reference without halves."""
+    halves = read_halves(ensemble, results, component)
+    if halves is None:
+        return {}
+    mean = sum(halves) / len(halves)
+    noise = (halves[0] - halves[1]) ** 2 / 4 if len(halves) == 2 else numpy.zeros_like(mean)
+    found = {}
+    for number in ensemble.description["passes"]:
+        deviations = numpy.stack([ensemble.component(group, number, component) - mean
+                                  for group in range(len(ensemble.seeds))])
+        for name, place in regions_of(ensemble, mean.shape).items():
+            part = deviations[(slice(None), *place)]
+            flat = part.reshape(len(part), -1)
+            found[number, name] = Moments(flat @ flat.T / flat.shape[1], ensemble.counts, float(noise[place].mean()),
+                                          part.shape[1] * part.shape[2])
+    return found
+
+
+def decompose(moments):
+    """(variance, squared bias, MSE)."""
+    counts, gram = moments.counts, moments.gram
+    seeds = counts.sum()
+    weights = counts / seeds
+    of_mean = weights @ gram @ weights
+    variance = (counts @ numpy.diag(gram) - seeds * of_mean) / (len(counts) - 1)
+    squared_bias = of_mean - moments.floor - variance / seeds
+    return numpy.array([variance, squared_bias, squared_bias + variance])
+
+
+def replicates(moments, estimate=decompose):
+    """The estimate without each group in turn, a row a group. NaN with fewer than three groups."""
+    if len(moments.counts) < 3:
+        return numpy.full((len(moments.counts), len(QUANTITIES)), numpy.nan)
+    return numpy.array([estimate(moments.without(group)) for group in range(len(moments.counts))])
+
+
+def jackknife_error(estimate, without, counts):
+    """Standard error of an estimate from its replicates. [Busing et al. 1999, equations 8 and 9]"""
+    shares = counts.sum() / counts
+    shape = (-1,) + (1,) * (without.ndim - 1)
+    shares = shares.reshape(shape)
+    groups = len(counts)
+    combined = groups * estimate - ((1 - 1 / shares) * without).sum(axis=0)
+    pseudo = shares * estimate - (shares - 1) * without
+    return numpy.sqrt(((pseudo - combined) ** 2 / (shares - 1)).mean(axis=0))
+
+
+COLUMNS = ["experiment", "scene", "point", *records.SETTINGS, "pass", "component", "region", "pixels", "seeds", "groups",
+           "paths_emitted", "seconds", "variance", "variance_error", "squared_bias", "squared_bias_error", "mse", "mse_error",
+           "reference_floor"]
+
+
+def rows_of_point(recorded, point):
+    """The records of a point's runs."""
+    rows = recorded[recorded["run"].str.rpartition("_seed-")[0] == point]
+    if rows.empty:
+        raise records.RecordError(f"ensembles/{point}: has no runs in iterations.csv; run the experiment again")
+    return rows
+
+
+def table_of(ensemble, results, recorded):
+    """The rows of decomposition.csv for one point."""
+    own = rows_of_point(recorded, ensemble.point)
+    first = own.iloc[0]
+    has_halves = len(records.reference_files(results, ensemble.description)) == 2
+    table = []
+    for component in records.COMPONENTS:
+        for (number, region), moments in moments_of(ensemble, results, component).items():
+            values = decompose(moments)
+            errors = jackknife_error(values, replicates(moments), moments.counts)
+            of_pass = own[(own["pass"] == number) & (own["component"] == component)]
+            paths = pandas_mean(of_pass["paths_emitted"])
+            table.append({
+                "experiment": first["experiment"], "scene": first["scene"], "point": ensemble.point,
+                **{column: first[column] for column in records.SETTINGS}, "pass": number, "component": component,
+                "region": region, "pixels": moments.pixels, "seeds": int(moments.counts.sum()),
+                "groups": len(moments.counts), "paths_emitted": paths, "seconds": repr(float(of_pass["seconds"].mean())),
+                "reference_floor": repr(moments.floor) if has_halves else "",
+                **{name: repr(float(value)) for name, value in zip(QUANTITIES, values)},
+                **{f"{name}_error": repr(float(error)) if numpy.isfinite(error) else ""
+                   for name, error in zip(QUANTITIES, errors)}})
+    return table
+
+
+def pandas_mean(texts):
+    """Mean of a column that is kept as text; empty where nothing is written."""
+    numbers = [float(text) for text in texts if text]
+    return repr(sum(numbers) / len(numbers)) if numbers else ""
+
+
+def write_images(ensemble, results, number):
+    """RESULTS/decomposition/POINT/pass-N.exr: layers `bias` (signed) and `variance` (of one seed), a value a pixel and
+    channel; R, G, B are the bias. Returns the file, or None without a reference."""
+    halves = read_halves(ensemble, results, "total")
+    if halves is None:
+        return None
+    counts = ensemble.counts
+    images = numpy.stack([ensemble.component(group, number, "total") for group in range(len(counts))])
+    mean = numpy.tensordot(counts / counts.sum(), images, axes=1)
+    variance = numpy.tensordot(counts, (images - mean) ** 2, axes=1) / (len(counts) - 1)
+    bias = mean - sum(halves) / len(halves)
+    file = Path(results) / "decomposition" / ensemble.point / f"pass-{number:06}.exr"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    channels = [f"{prefix}{channel}" for prefix in ["", "bias.", "variance."] for channel in "RGB"]
+    spec = OpenImageIO.ImageSpec(mean.shape[1], mean.shape[0], len(channels), "float")
+    spec.channelnames = channels
+    output = OpenImageIO.ImageOutput.create(str(file))
+    pixels = numpy.concatenate([bias, bias, variance], axis=2).astype(numpy.float32)
+    if output is None or not output.open(str(file), spec) or not output.write_image(pixels) or not output.close():
+        raise records.RecordError(f"{file}: cannot be written: {output.geterror() if output else OpenImageIO.geterror()}")
+    return file
+
+
+def write_table(file, columns, table):
+    with open(file, "w", newline="", encoding="utf-8") as stream:
+        writer = csv.DictWriter(stream, columns, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(table)
+    print(file)
+
+
+def main(arguments):
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
+                                     formatter_class=argparse.RawDescriptionHelpFormatter,
+                                     epilog="Writes RESULTS_DIR/decomposition.csv and, of the last pass, images of bias "
+                                     "and variance\nin RESULTS_DIR/decomposition/.\n\n" + __doc__.split("\n\n", 1)[1])
+    parser.add_argument("results", metavar="RESULTS_DIR", type=Path, help="folder of an experiment's results")
+    results = parser.parse_args(arguments).results
+    try:
+        recorded = records.read_records(results)
+        table = []
+        for ensemble in read_ensembles(results):
+            table += table_of(ensemble, results, recorded)
+            write_images(ensemble, results, max(ensemble.description["passes"]))
+        write_table(results / "decomposition.csv", COLUMNS, table)
+    except (records.RecordError, OSError) as error:
+        print(error, file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
