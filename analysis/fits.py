@@ -1,0 +1,233 @@
+"""Fits how fast variance, squared bias and MSE fall with the passes, and sets the slopes beside theory; finds the best alpha.
+
+A slope is that of a straight line through log(quantity) against log(pass), least squares over the recorded passes of a window.
+Passes of one run are cumulative and so correlated: intervals come from leaving out groups of seeds (decomposition.py), 95% by
+Student's distribution with one degree less than groups. Beside it stand
+
+    asymptote    variance -alpha, squared bias 2 (alpha - 1), MSE -min(alpha, 2 - 2 alpha), where light is smooth
+                 [Knaus and Zwicker 2011; Kaplanyan and Dachsbacher 2013]
+    edge         (alpha - 1) / 2 for squared bias: at edges it is of order one in a band as wide as the radius
+    predicted    the slope of the exact sums at these passes, fitted in the same way, which is the fair comparison before
+                 the asymptote: variance_n / variance_1 = n^-2 sum r_1^2 / r_i^2, bias_n / bias_1 = mean of r_i^2 / r_1^2, with
+                 Knaus and Zwicker's radii in closed form, and with Hachisuka's as they were recorded; MSE is their sum, with
+                 the measured shares at the window's first pass
+
+and a verdict: "agrees" when the interval holds the prediction, "differs" when it does not, "cannot tell" when a quantity is not
+above two standard errors at every pass of the window, or the interval is wider than 1. Most pictures have edges: a squared bias
+that "differs" from the smooth prediction is what theory says of them.
+"""
+
+import argparse
+import math
+import sys
+from pathlib import Path
+
+try:
+    import decomposition
+    import numpy
+    import pandas
+    import records
+    from scipy import stats
+except ImportError as error:
+    print(f"{sys.executable}: {error}; expected an interpreter with numpy, scipy, pandas and OpenImageIO (on Debian: "
+          "/usr/bin/python3 with python3-scipy, python3-pandas and python3-openimageio)", file=sys.stderr)
+    sys.exit(2)
+
+WIDEST = 1.0    # interval of a slope that says anything
+FIT_COLUMNS = ["experiment", "scene", "point", *records.SETTINGS, "component", "region", "quantity", "first_pass",
+               "last_pass", "passes", "seeds", "slope", "low", "high", "asymptote", "edge", "predicted", "verdict"]
+BEST_COLUMNS = ["experiment", "scene", "component", "region", "pass", "paths_emitted", "best_alpha", "mse", "runner_up",
+                "difference", "difference_error", "verdict"]
+
+
+def default_window(passes):
+    """From a 32nd of the last pass on, but not before pass 4: the first passes are not on the asymptote."""
+    last = max(passes)
+    return max(4, last // 32), last
+
+
+def slope(passes, values):
+    """Least squares on logarithmic axes; NaN when a value is not positive. `values` may have rows of replicates."""
+    x = numpy.log(numpy.asarray(passes, dtype=float))
+    x -= x.mean()
+    with numpy.errstate(invalid="ignore", divide="ignore"):
+        return numpy.log(values) @ x / (x @ x)
+
+
+def knaus_zwicker_radii(alpha, last):
+    """r_i^2 / r_1^2 for passes 1 to last. [Knaus and Zwicker 2011, equation 20]"""
+    squared = numpy.ones(last)
+    for i in range(1, last):
+        squared[i] = squared[i - 1] * (i + alpha) / (i + 1)
+    return squared
+
+
+def recorded_radii(rows, last):
+    """The same from `radius_mean`, which after pass i is that of pass i + 1; between recorded passes by straight lines on
+    logarithmic axes."""
+    of_total = rows[rows["component"] == "total"]
+    radii = pandas.to_numeric(of_total["radius_mean"], errors="coerce")
+    if radii.isna().any():
+        raise records.RecordError(f"run {of_total['run'][radii.isna()].iloc[0]}: expected radius_mean in every row of ppm")
+    means = radii.groupby(of_total["pass"]).mean()
+    number = numpy.arange(1, last + 1)
+    return numpy.exp(2 * numpy.interp(numpy.log(number), numpy.log(means.index + 1.0), numpy.log(means))
+                     - 2 * math.log(means.iloc[0]))
+
+
+def predictions(rows, last):
+    """(variance_n / variance_1, bias_n / bias_1) for n = 1 to last; None for methods without a prediction."""
+    first = rows.iloc[0]
+    number = numpy.arange(1, last + 1)
+    if first["integrator"] == "path":
+        return 1 / number, None
+    if first["integrator"] == "photonmapper":
+        return (1 / number, numpy.ones(last)) if first["mode"] == "radius" else None
+    knaus_zwicker = first["schedule"] == "knaus-zwicker"
+    squared = knaus_zwicker_radii(float(first["alpha"]), last) if knaus_zwicker else recorded_radii(rows, last)
+    return numpy.cumsum(1 / squared) / number ** 2, numpy.cumsum(squared) / number
+
+
+def asymptotes(first):
+    """{quantity: (smooth, at edges)} of slopes; None where theory has none."""
+    none = {quantity: (None, None) for quantity in decomposition.QUANTITIES}
+    if first["integrator"] == "path":
+        return {**none, "variance": (-1.0, None), "mse": (-1.0, None)}
+    if first["integrator"] == "photonmapper":
+        return {**none, "variance": (-1.0, None), "squared_bias": (0.0, 0.0)} if first["mode"] == "radius" else none
+    alpha = float(first["alpha"])
+    return {"variance": (-alpha, None), "squared_bias": (2 * (alpha - 1), (alpha - 1) / 2),
+            "mse": (-min(alpha, 2 - 2 * alpha), None)}
+
+
+def fit(moments, passes, predicted):
+    """{quantity: (slope, low, high, predicted slope, verdict)} from {pass: Moments}."""
+    counts = moments[passes[0]].counts
+    values = numpy.array([decomposition.decompose(moments[number]) for number in passes])    # [pass][quantity]
+    without = numpy.array([decomposition.replicates(moments[number]) for number in passes])    # [pass][group][quantity]
+    errors = numpy.array([decomposition.jackknife_error(value, left, counts) for value, left in zip(values, without)])
+    results = {}
+    for place, quantity in enumerate(decomposition.QUANTITIES):
+        expected = predicted_slope(quantity, passes, values[0], predicted)
+        resolved = (values[:, place] > 2 * errors[:, place]).all()
+        found = slope(passes, values[:, place])
+        left = slope(passes, without[:, :, place].T)
+        if not resolved or not numpy.isfinite(left).all():
+            results[quantity] = (None, None, None, expected, "cannot tell")
+            continue
+        reach = stats.t.ppf(0.975, len(counts) - 1) * decomposition.jackknife_error(found, left, counts)
+        verdict = ("" if expected is None else "cannot tell" if 2 * reach > WIDEST
+                   else "agrees" if abs(found - expected) <= reach else "differs")
+        results[quantity] = (found, found - reach, found + reach, expected, verdict)
+    return results
+
+
+def predicted_slope(quantity, passes, first_values, predicted):
+    """The fitted slope of the prediction at these passes; None without one."""
+    if predicted is None:
+        return None
+    variance, bias = predicted
+    places = numpy.array(passes) - 1
+    if quantity == "variance":
+        return slope(passes, variance[places])
+    if bias is None:
+        return None
+    squared = bias[places] ** 2
+    if quantity == "squared_bias":
+        return slope(passes, squared)
+    of_variance, of_bias = max(0.0, first_values[0]), max(0.0, first_values[1])
+    whole = of_variance * variance[places] / variance[places[0]] + of_bias * squared / squared[0]
+    return slope(passes, whole) if whole[0] > 0 else None
+
+
+def text(number):
+    return "" if number is None or not math.isfinite(number) else repr(float(number))
+
+
+def fits_of(ensemble, own, moments, component, window):
+    """The rows of fits.csv of one point and component."""
+    first = own.iloc[0]
+    passes = [number for number in sorted(ensemble.description["passes"]) if window[0] <= number <= window[1]]
+    if len(passes) < 3:
+        raise records.RecordError(f"{ensemble.folder}: expected at least 3 recorded passes from {window[0]} to {window[1]}")
+    predicted = predictions(own, passes[-1])
+    table = []
+    for region in dict.fromkeys(region for _, region in moments):
+        of_region = {number: moments[number, region] for number in passes}
+        for quantity, (found, low, high, expected, verdict) in fit(of_region, passes, predicted).items():
+            smooth, edge = asymptotes(first)[quantity]
+            table.append({
+                "experiment": first["experiment"], "scene": first["scene"], "point": ensemble.point,
+                **{column: first[column] for column in records.SETTINGS}, "component": component, "region": region,
+                "quantity": quantity, "first_pass": passes[0], "last_pass": passes[-1], "passes": len(passes),
+                "seeds": int(of_region[passes[0]].counts.sum()), "slope": text(found), "low": text(low), "high": text(high),
+                "asymptote": text(smooth), "edge": text(edge), "predicted": text(expected), "verdict": verdict})
+    return table
+
+
+def best_alphas(family, component):
+    """Rows of best-alphas.csv of points of one scene that differ in alpha alone: {alpha: (own records, {(pass, region):
+    Moments})}. All share their seeds, so differences are taken group by group."""
+    table = []
+    first_own, first_moments = next(iter(family.values()))
+    for number, region in first_moments:
+        if number == 0:
+            continue
+        found = {}
+        for alpha, (_, moments) in family.items():
+            at = moments[number, region]
+            found[alpha] = (decomposition.decompose(at)[2], decomposition.replicates(at)[:, 2], at.counts)
+        order = sorted(found, key=lambda alpha: found[alpha][0])
+        (least, least_without, counts), (second, second_without, _) = found[order[0]], found[order[1]]
+        error = float(decomposition.jackknife_error(second - least, second_without - least_without, counts))
+        first = first_own.iloc[0]
+        of_pass = first_own[(first_own["pass"] == number) & (first_own["component"] == component)]
+        table.append({"experiment": first["experiment"], "scene": first["scene"], "component": component, "region": region,
+                      "pass": number, "paths_emitted": decomposition.pandas_mean(of_pass["paths_emitted"]),
+                      "best_alpha": order[0], "mse": text(least), "runner_up": order[1], "difference": text(second - least),
+                      "difference_error": text(error), "verdict": "" if second - least > 2 * error else "cannot tell"})
+    return table
+
+
+def main(arguments):
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
+                                     formatter_class=argparse.RawDescriptionHelpFormatter,
+                                     epilog="Writes RESULTS_DIR/fits.csv and, where alpha was swept, best-alphas.csv: the alpha "
+                                     "of least MSE by\nscene, component, region and pass, with its lead on the runner-up and that "
+                                     "lead's standard error.\n\n" + __doc__.split("\n\n", 1)[1])
+    parser.add_argument("results", metavar="RESULTS_DIR", type=Path, help="folder of an experiment's results")
+    parser.add_argument("--from", dest="first", type=int, metavar="PASS", help="first pass of the window (default: a 32nd of "
+                        "the last, at least 4)")
+    parser.add_argument("--to", dest="last", type=int, metavar="PASS", help="last pass of the window (default: the last)")
+    options = parser.parse_args(arguments)
+    try:
+        recorded = records.read_records(options.results)
+        table, families = [], {}
+        for ensemble in decomposition.read_ensembles(options.results):
+            own = decomposition.rows_of_point(recorded, ensemble.point)
+            first = own.iloc[0]
+            first_pass, last_pass = default_window(ensemble.description["passes"])
+            window = (options.first or first_pass, options.last or last_pass)
+            for component in records.COMPONENTS:
+                if component == "emission":    # it has neither bias nor variance
+                    continue
+                moments = decomposition.moments_of(ensemble, options.results, component)
+                if not moments:
+                    continue
+                table += fits_of(ensemble, own, moments, component, window)
+                if first["integrator"] == "ppm":
+                    rest = tuple(first[column] for column in ["scene", *records.SETTINGS] if column != "alpha")
+                    families.setdefault((rest, component), {})[first["alpha"]] = (own, moments)
+        decomposition.write_table(options.results / "fits.csv", FIT_COLUMNS, table)
+        best = [row for (_, component), family in families.items() if len(family) > 1
+                for row in best_alphas(family, component)]
+        if best:
+            decomposition.write_table(options.results / "best-alphas.csv", BEST_COLUMNS, best)
+    except (records.RecordError, OSError) as error:
+        print(error, file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
