@@ -201,9 +201,14 @@ COLUMNS = ["experiment", "scene", "point", *records.SETTINGS, "pass", "component
            "reference_floor"]
 
 
+def point_of(run):
+    """A run's name without its seed."""
+    return run.rpartition("_seed-")[0]
+
+
 def rows_of_point(recorded, point):
     """The records of a point's runs."""
-    rows = recorded[recorded["run"].str.rpartition("_seed-")[0] == point]
+    rows = recorded[recorded["run"].map(point_of) == point]
     if rows.empty:
         raise records.RecordError(f"ensembles/{point}: has no runs in iterations.csv; run the experiment again")
     return rows

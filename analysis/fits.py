@@ -33,7 +33,8 @@ except ImportError as error:
           "/usr/bin/python3 with python3-scipy, python3-pandas and python3-openimageio)", file=sys.stderr)
     sys.exit(2)
 
-WIDEST = 1.0    # interval of a slope that says anything
+WIDEST = 1.0      # interval of a slope that says anything
+RESOLVED = 2.0    # standard errors above 0
 FIT_COLUMNS = ["experiment", "scene", "point", *records.SETTINGS, "component", "region", "quantity", "first_pass",
                "last_pass", "passes", "seeds", "slope", "low", "high", "asymptote", "edge", "predicted", "verdict"]
 BEST_COLUMNS = ["experiment", "scene", "component", "region", "pass", "paths_emitted", "best_alpha", "mse", "runner_up",
@@ -109,7 +110,7 @@ def fit(moments, passes, predicted):
     results = {}
     for place, quantity in enumerate(decomposition.QUANTITIES):
         expected = predicted_slope(quantity, passes, values[0], predicted)
-        resolved = (values[:, place] > 2 * errors[:, place]).all()
+        resolved = (values[:, place] > RESOLVED * errors[:, place]).all()
         found = slope(passes, values[:, place])
         left = slope(passes, without[:, :, place].T)
         if not resolved or not numpy.isfinite(left).all():
@@ -185,7 +186,7 @@ def best_alphas(family, component):
         table.append({"experiment": first["experiment"], "scene": first["scene"], "component": component, "region": region,
                       "pass": number, "paths_emitted": decomposition.pandas_mean(of_pass["paths_emitted"]),
                       "best_alpha": order[0], "mse": text(least), "runner_up": order[1], "difference": text(second - least),
-                      "difference_error": text(error), "verdict": "" if second - least > 2 * error else "cannot tell"})
+                      "difference_error": text(error), "verdict": "" if second - least > RESOLVED * error else "cannot tell"})
     return table
 
 

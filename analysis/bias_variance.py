@@ -1,0 +1,210 @@
+"""Draws how variance, squared bias and MSE fall with the passes, a figure per scene: a row for the whole image and for
+each named region, a line per method. Read by it, RESULTS_DIR/decomposition.csv, is written by decomposition.py.
+
+Bands are 1.96 standard errors to both sides: 95% where errors are Gaussian. Thin dotted lines are what theory predicts
+for these passes (fits.py), through the measured value at the window's first pass. What is not above two standard errors
+is not resolved: a logarithmic axis could only show the half of it that came out high, so it is marked at the bottom.
+
+Where the reference has it, gathered light is drawn, which is what theory is about; otherwise the whole picture.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+try:
+    import decomposition
+    import fits
+    import numpy
+    import records
+    import style
+    from convergence import BELOW_MARK
+    from matplotlib import lines
+    from matplotlib.transforms import blended_transform_factory
+except ImportError as error:
+    print(f"{sys.executable}: {error}; expected an interpreter with numpy, scipy, pandas, matplotlib and OpenImageIO (on "
+          "Debian: /usr/bin/python3 with python3-scipy, python3-pandas, python3-matplotlib and python3-openimageio)",
+          file=sys.stderr)
+    sys.exit(2)
+
+TITLES = {"variance": "variance", "squared_bias": "squared bias", "mse": "MSE"}
+COMPONENT_TITLES = {"gathered": "gathered light", "total": "whole picture"}
+BAND = 1.96    # standard errors
+THEORY_LINE = {"linewidth": 0.7, "linestyle": (0, (1, 1.5)), "zorder": 1.5}
+
+
+def read_decomposition(results):
+    """Rows of RESULTS/decomposition.csv with estimates and errors as numbers, NaN where there are none."""
+    file = Path(results) / "decomposition.csv"
+    if not file.is_file():
+        raise records.RecordError(f"{file}: is not there; run decomposition.py first")
+    rows = records.read_table(file)
+    numbers = ["pass", "seeds", "groups", *(column for quantity in TITLES for column in [quantity, f"{quantity}_error"])]
+    missing = {*numbers, "scene", "point", "component", "region"} - set(rows.columns)
+    if missing:
+        raise records.RecordError(f"{file}: lacks the columns {', '.join(sorted(missing))}; run decomposition.py again")
+    for column in numbers:
+        rows[column] = records.to_numbers(file, rows[column], whole=column in ["pass", "seeds", "groups"])
+    return rows
+
+
+def component_to_draw(rows):
+    """Gathered light, where something is known of its bias at all points or at none."""
+    known = rows.groupby("component")["mse"].count()
+    return "gathered" if known.get("gathered", 0) >= known["total"] * 0.999 else "total"
+
+
+def curve_of(rows, quantity):
+    """(passes, values, errors, resolved) of one point and region."""
+    rows = rows[rows[quantity].notna()].sort_values("pass")
+    values, errors = rows[quantity].to_numpy(), rows[f"{quantity}_error"].to_numpy()
+    return rows["pass"].to_numpy(), values, errors, values > fits.RESOLVED * numpy.nan_to_num(errors)
+
+
+def theory_of(recorded_rows, rows, component, region):
+    """(passes, {quantity: values}) that theory predicts over the window; `rows` are a point's of decomposition.csv."""
+    first, last = fits.default_window(rows["pass"].astype(int))
+    predicted = fits.predictions(recorded_rows, last)
+    at_first = rows[(rows["pass"] == first) & (rows["region"] == region) & (rows["component"] == component)]
+    if predicted is None or at_first.empty:
+        return [], {}
+    measured = at_first.iloc[0]
+    passes = numpy.arange(first, last + 1)
+    values = {}
+    for quantity, shape in zip(["variance", "squared_bias"], [predicted[0], None if predicted[1] is None else predicted[1] ** 2]):
+        # A line through a value that is not resolved would start anywhere.
+        if shape is not None and measured[quantity] > fits.RESOLVED * measured[f"{quantity}_error"]:
+            values[quantity] = measured[quantity] * shape[passes - 1] / shape[first - 1]
+    if len(values) == 2:
+        values["mse"] = values["variance"] + values["squared_bias"]
+    return passes, values
+
+
+def draw_panel(axes, curves, theories, styles, limits):
+    """One region and quantity; `curves` and `theories` are by label."""
+    at_bottom = blended_transform_factory(axes.transData, axes.transAxes)
+    methods_below = 0    # each has a row of marks of its own
+    for label, (passes, values, errors, resolved) in curves.items():
+        look = styles[label]
+        shown = numpy.where(resolved, values, numpy.nan)
+        low = numpy.maximum(values - BAND * errors, limits[0])
+        axes.fill_between(passes, low, values + BAND * errors, where=resolved & numpy.isfinite(errors),
+                          color=look["color"], alpha=0.2, linewidth=0)
+        axes.plot(passes, shown, label=label, markevery=style.marked_places(list(passes)), **look)
+        if not resolved.all():
+            axes.plot(passes[~resolved], [0.03 + 0.045 * methods_below] * int((~resolved).sum()), transform=at_bottom,
+                      color=look["color"], **BELOW_MARK)
+            methods_below += 1
+    for label, (passes, values) in theories.items():
+        axes.plot(passes, values, color=styles[label]["color"], **THEORY_LINE)
+    style.logarithmic(axes.yaxis, *limits)
+
+
+def vertical_range(curves):
+    """Limits of a row's axis: every resolved value of its panels, and room for marks below."""
+    seen = [value for passes, values, _, resolved in curves for value in values[resolved]]
+    if not seen:
+        return None
+    low, high = min(seen), max(seen)
+    margin = max((high / low) ** 0.06, 1.2)
+    any_below = any(not resolved.all() for *_, resolved in curves)
+    return low / margin ** (3 if any_below else 1), high * margin
+
+
+def notes(rows, component, any_theory):
+    """What a reader has to know to read the figure, in one paragraph."""
+    seeds, groups = rows["seeds"].min(), rows["groups"].min()
+    text = [f"{COMPONENT_TITLES[component].capitalize()}, {seeds:.0f} seeds in {groups:.0f} groups; per pixel and channel, "
+            "of one seed's image. Band: 1.96 standard errors (jackknife over groups)."]
+    if any_theory:
+        text.append("Dotted: predicted for these passes, through the measured value at the window's first.")
+    if rows["mse"].notna().any() and (rows["reference_floor"] == "").any():
+        text.append("The reference has no second half: its own noise is in squared bias and MSE.")
+    if (rows["direct"] == "photons").any():
+        text.append("Photons carry direct light.")
+    return " ".join(text)
+
+
+def draw_scene(recorded, rows, labels):
+    """The figure of one scene; None when nothing in it is resolved. `recorded` are the records, `rows` those of
+    decomposition.csv, both of the scene."""
+    styles = style.method_styles(recorded, labels)
+    component = component_to_draw(rows)
+    rows = rows[rows["pass"] > 0]    # a logarithmic axis has no place for it
+    label_of = recorded.drop_duplicates("run").assign(point=lambda runs: runs["run"].map(decomposition.point_of)) \
+        .drop_duplicates("point").set_index("point")["method"].to_dict()
+    points = recorded["run"].map(decomposition.point_of)
+    lines_of_figure = []    # (region, {quantity: curves}, {quantity: theories}, limits)
+    for region in rows["region"].drop_duplicates():
+        curves = {quantity: {} for quantity in TITLES}
+        theories = {quantity: {} for quantity in TITLES}
+        for point in sorted(set(rows["point"]), key=lambda point: labels.index(label_of[point])):
+            of_point = rows[rows["point"] == point]
+            drawn = of_point[(of_point["component"] == component) & (of_point["region"] == region)]
+            passes, predicted = theory_of(recorded[points == point], of_point, component, region)
+            for quantity in TITLES:
+                if drawn[quantity].notna().any():
+                    curves[quantity][label_of[point]] = curve_of(drawn, quantity)
+                if quantity in predicted:
+                    theories[quantity][label_of[point]] = (passes, predicted[quantity])
+        limits = vertical_range([curve for of_quantity in curves.values() for curve in of_quantity.values()])
+        if limits:
+            lines_of_figure.append((region, curves, theories, limits))
+    if not lines_of_figure:
+        return None
+
+    style.use()
+    any_theory = any(of_quantity for _, _, theories, _ in lines_of_figure for of_quantity in theories.values())
+    any_below = any(not resolved.all() for _, curves, _, _ in lines_of_figure for of_quantity in curves.values()
+                    for *_, resolved in of_quantity.values())
+    handles = [lines.Line2D([], [], label=label, **styles[label]) for label in labels if label in label_of.values()]
+    if any_theory:
+        handles.append(lines.Line2D([], [], label="theory", color="#555555", **THEORY_LINE))
+    if any_below:
+        handles.append(lines.Line2D([], [], label="below resolution", color="#555555", **BELOW_MARK))
+    caption = notes(rows[rows["component"] == component], component, any_theory)
+    figure, grid = style.panels_over_legend(len(lines_of_figure), len(TITLES), handles, caption)
+    last = max(2, rows["pass"].max())
+    for (region, curves, theories, limits), row in zip(lines_of_figure, grid):
+        for axes, (quantity, title) in zip(row, TITLES.items()):
+            draw_panel(axes, curves[quantity], theories[quantity], styles, limits)
+            style.logarithmic(axes.xaxis, 1 / 1.15, last * 1.15, base_two=True)
+            axes.set_title(title, loc="right")
+            axes.set_xlabel("pass")
+        row[0].set_ylabel(f"{region} (radiance²)")
+    grid[0][0].set_title(rows["scene"].iloc[0], loc="left")
+    figure.align_ylabels()
+    return figure
+
+
+def main(arguments):
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
+                                     formatter_class=argparse.RawDescriptionHelpFormatter,
+                                     epilog="Writes RESULTS_DIR/figures/bias-variance-SCENE.png and .pdf.\n\n" +
+                                     __doc__.split("\n\n", 1)[1])
+    parser.add_argument("results", metavar="RESULTS_DIR", type=Path, help="folder of an experiment's results")
+    results = parser.parse_args(arguments).results
+    try:
+        recorded = records.read_records(results)
+        rows = read_decomposition(results)
+        unknown = set(rows["point"]) - set(recorded["run"].map(decomposition.point_of))
+        if unknown:
+            raise records.RecordError(f"{results / 'decomposition.csv'}: {min(unknown)} is not in iterations.csv; run "
+                                      "decomposition.py again")
+        labels = records.methods_in_order(recorded)
+        for scene, scene_rows in rows.groupby("scene", sort=False):
+            of_scene = recorded[recorded["scene"] == scene]
+            figure = draw_scene(of_scene, scene_rows, [label for label in labels if label in set(of_scene["method"])])
+            if figure is None:
+                print(f"{scene}: nothing is resolved, so there is nothing to draw")
+                continue
+            for file in style.save(figure, results, f"bias-variance-{records.file_name(scene)}"):
+                print(file)
+    except (records.RecordError, OSError) as error:
+        print(error, file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,71 @@
+"""The figure of bias and variance shows what decomposition.csv says, theory beside it, and marks what is not resolved."""
+
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy
+import synthetic
+
+try:
+    import bias_variance
+    import decomposition
+    import fits
+    import records
+    import synthetic_ensembles as made
+except ImportError as error:
+    raise unittest.SkipTest(f"{error} (Debian: python3-openimageio)")
+
+
+class BiasVariance(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.results = Path(folder.name)
+        random = numpy.random.default_rng(31)
+        made.write_reference(self.results, 0.001, random)
+        seeds = list(range(1, 9))
+        settings = {}
+        for alpha in ["0.5", "0.9"]:
+            made.write_ensemble(self.results, f"box_alpha-{alpha}", seeds, lambda n: 0.1 if alpha == "0.9" else 0.0,
+                                lambda n: 0.2 / max(1, n) ** 0.25, random)
+            settings[f"box_alpha-{alpha}"] = {"alpha": alpha, "schedule": "knaus-zwicker"}
+        made.write_records(self.results, settings, seeds)
+        self.assertEqual(synthetic.run(decomposition, self.results)[0], 0)
+
+    def test_a_figure_a_scene_is_drawn(self):
+        code, output, errors = synthetic.run(bias_variance, self.results)
+        self.assertEqual((code, errors), (0, ""))
+        for name in ["bias-variance-cornell-box.png", "bias-variance-cornell-box.pdf"]:
+            self.assertIn(name, output)
+
+    def test_what_is_not_above_two_errors_is_not_resolved(self):
+        rows = bias_variance.read_decomposition(self.results)
+        gathered = rows[(rows["component"] == "gathered") & (rows["region"] == "image") & (rows["pass"] > 0)]
+        *_, resolved = bias_variance.curve_of(gathered[gathered["point"] == "box_alpha-0.9"], "squared_bias")
+        self.assertTrue(resolved.all())
+        *_, resolved = bias_variance.curve_of(gathered[gathered["point"] == "box_alpha-0.5"], "squared_bias")
+        self.assertLess(resolved.sum(), 4)    # of 8 passes; above two errors by chance in a few
+
+    def test_theory_starts_at_the_first_value_of_the_window(self):
+        rows = bias_variance.read_decomposition(self.results)
+        rows = rows[(rows["point"] == "box_alpha-0.9") & (rows["pass"] > 0)]
+        recorded = decomposition.rows_of_point(records.read_records(self.results), "box_alpha-0.9")
+        passes, values = bias_variance.theory_of(recorded, rows, "gathered", "image")
+        self.assertEqual((passes[0], passes[-1]), (4, 128))
+        at_first = rows[(rows["pass"] == 4) & (rows["region"] == "image") & (rows["component"] == "gathered")].iloc[0]
+        for quantity in decomposition.QUANTITIES:
+            self.assertAlmostEqual(values[quantity][0] / at_first[quantity], 1, places=9)
+        number = numpy.arange(1, 129)
+        expected = numpy.cumsum(fits.knaus_zwicker_radii(0.9, 128)) / number
+        self.assertAlmostEqual(values["squared_bias"][-1] / values["squared_bias"][0], (expected[-1] / expected[3]) ** 2)
+
+    def test_without_a_decomposition_it_says_what_to_run(self):
+        (self.results / "decomposition.csv").unlink()
+        code, _, errors = synthetic.run(bias_variance, self.results)
+        self.assertEqual(code, 2)
+        self.assertIn("run decomposition.py first", errors)
+
+
+if __name__ == "__main__":
+    unittest.main()
