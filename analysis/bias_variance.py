@@ -64,9 +64,11 @@ def curve_of(rows, quantity):
 def theory_of(recorded_rows, rows, component, region):
     """(passes, {quantity: values}) that theory predicts over the window; `rows` are a point's of decomposition.csv."""
     first, last = fits.default_window(rows["pass"].astype(int))
-    predicted = fits.predictions(recorded_rows, last)
+    predicted = fits.predictions(recorded_rows, component, last)
     at_first = rows[(rows["pass"] == first) & (rows["region"] == region) & (rows["component"] == component)]
-    if predicted is None or at_first.empty:
+    # Of the whole picture with direct light by shadow rays it is a sum, which fits.py predicts and this does not draw.
+    is_mixed = component == "total" and (rows["component"] == "direct").any()
+    if predicted is None or at_first.empty or is_mixed:
         return [], {}
     measured = at_first.iloc[0]
     passes = numpy.arange(first, last + 1)

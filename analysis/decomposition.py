@@ -104,6 +104,9 @@ def read_ensemble(folder):
         layers.append(own_layers)
     if len(seeds) < 2:
         raise records.RecordError(f"{folder}: expected at least two seeds, found {len(seeds)}")
+    all_seeds = [seed for group in seeds for seed in group]
+    if len(set(all_seeds)) < len(all_seeds):
+        raise records.RecordError(f"{folder}: expected each seed in one slot; remove the folder and run the experiment again")
     return Ensemble(Path(folder), description, seeds, layers)
 
 
@@ -117,19 +120,23 @@ def read_ensembles(results):
 
 
 def read_halves(ensemble, results, component):
-    """[A, B] or [image] of the reference's component; None where it does not apply."""
+    """[A, B] or [image] of the reference's component; empty where it does not have it or there is no reference."""
+    if ensemble.description["reference"] is None:
+        return []
     carried = ensemble.description["photons_carry_direct"]
-    if carried and component == "direct":
-        return None
     files = records.reference_files(results, ensemble.description)
+    if not files:
+        raise records.RecordError(f"{ensemble.folder}: its reference {ensemble.description['reference']['path']} is not there")
     halves = [pictures.read_component(file, component, carried) for file in files]
-    return halves if halves and all(half is not None for half in halves) else None
+    return halves if all(half is not None for half in halves) else []
 
 
 def regions_of(ensemble, shape):
     """{name: (slice of rows, slice of columns)}, the whole image first."""
     regions = {WHOLE: (slice(0, shape[0]), slice(0, shape[1]))}
     for name, (left, top, right, bottom) in ensemble.description["regions"].items():
+        if right > shape[1] or bottom > shape[0]:
+            raise records.RecordError(f"{ensemble.folder}: expected the region {name} inside {shape[1]}x{shape[0]} pixels")
         regions[name] = (slice(top, bottom), slice(left, right))
     return regions
 
@@ -137,7 +144,8 @@ def regions_of(ensemble, shape):
 @dataclass
 class Moments:
     """What is needed of a region after a pass: inner products of the groups' deviations from the reference, as means over
-    pixels and channels, and the reference's own variance (0 when it is not known)."""
+    pixels and channels, and the reference's own variance: 0 for a reference of one image, NaN without one, so that what needs
+    it becomes NaN. A pixel with a value that is not finite in any of the images is left out, as it is in the records."""
     gram: numpy.ndarray
     counts: numpy.ndarray
     floor: float
@@ -149,21 +157,26 @@ class Moments:
 
 
 def moments_of(ensemble, results, component):
-    """{(pass, region): Moments}, and the floor's meaning: None for a reference without halves."""
-    halves = read_halves(ensemble, results, component)
-    if halves is None:
+    """{(pass, region): Moments}; empty where the component does not apply."""
+    if component == "direct" and ensemble.description["photons_carry_direct"]:
         return {}
-    mean = sum(halves) / len(halves)
-    noise = (halves[0] - halves[1]) ** 2 / 4 if len(halves) == 2 else numpy.zeros_like(mean)
+    halves = read_halves(ensemble, results, component)
     found = {}
     for number in ensemble.description["passes"]:
-        deviations = numpy.stack([ensemble.component(group, number, component) - mean
-                                  for group in range(len(ensemble.seeds))])
+        images = numpy.stack([ensemble.component(group, number, component) for group in range(len(ensemble.seeds))])
+        mean = sum(halves) / len(halves) if halves else numpy.zeros(images.shape[1:])
+        if mean.shape != images.shape[1:]:
+            raise records.RecordError(f"{ensemble.folder}: its reference is of another size than its images")
+        noise = (numpy.full_like(mean, numpy.nan) if not halves else (halves[0] - halves[1]) ** 2 / 4 if len(halves) == 2
+                 else numpy.zeros_like(mean))
+        deviations = images - mean
+        finite = numpy.isfinite(deviations).all(axis=(0, 3))
         for name, place in regions_of(ensemble, mean.shape).items():
-            part = deviations[(slice(None), *place)]
-            flat = part.reshape(len(part), -1)
-            found[number, name] = Moments(flat @ flat.T / flat.shape[1], ensemble.counts, float(noise[place].mean()),
-                                          part.shape[1] * part.shape[2])
+            kept = finite[place]
+            flat = deviations[(slice(None), *place)][:, kept].reshape(len(deviations), -1)
+            if flat.shape[1]:
+                found[number, name] = Moments(flat @ flat.T / flat.shape[1], ensemble.counts,
+                                              float(noise[place][kept].mean()), int(kept.sum()))
     return found
 
 
@@ -206,19 +219,26 @@ def point_of(run):
     return run.rpartition("_seed-")[0]
 
 
-def rows_of_point(recorded, point):
-    """The records of a point's runs."""
-    rows = recorded[recorded["run"].map(point_of) == point]
+def rows_of(ensemble, recorded):
+    """The records of a point's runs; None for a point that the experiment does not have any more."""
+    rows = recorded[recorded["run"].map(point_of) == ensemble.point]
     if rows.empty:
-        raise records.RecordError(f"ensembles/{point}: has no runs in iterations.csv; run the experiment again")
+        print(f"{ensemble.folder}: has no runs in iterations.csv; left out")
+        return None
+    summed = {seed for group in ensemble.seeds for seed in group}
+    if not set(rows["seed"].astype(int)) <= summed:
+        raise records.RecordError(f"{ensemble.folder}: lacks seeds that iterations.csv has; run the experiment again")
     return rows
 
 
-def table_of(ensemble, results, recorded):
-    """The rows of decomposition.csv for one point."""
-    own = rows_of_point(recorded, ensemble.point)
+def text(number):
+    return repr(float(number)) if numpy.isfinite(number) else ""
+
+
+def table_of(ensemble, results, own):
+    """The rows of decomposition.csv for one point; `own` are its records."""
     first = own.iloc[0]
-    has_halves = len(records.reference_files(results, ensemble.description)) == 2
+    has_halves = len(read_halves(ensemble, results, "total")) == 2
     table = []
     for component in records.COMPONENTS:
         for (number, region), moments in moments_of(ensemble, results, component).items():
@@ -232,9 +252,8 @@ def table_of(ensemble, results, recorded):
                 "region": region, "pixels": moments.pixels, "seeds": int(moments.counts.sum()),
                 "groups": len(moments.counts), "paths_emitted": paths, "seconds": repr(float(of_pass["seconds"].mean())),
                 "reference_floor": repr(moments.floor) if has_halves else "",
-                **{name: repr(float(value)) for name, value in zip(QUANTITIES, values)},
-                **{f"{name}_error": repr(float(error)) if numpy.isfinite(error) else ""
-                   for name, error in zip(QUANTITIES, errors)}})
+                **{name: text(value) for name, value in zip(QUANTITIES, values)},
+                **{f"{name}_error": text(error) for name, error in zip(QUANTITIES, errors)}})
     return table
 
 
@@ -248,7 +267,7 @@ def write_images(ensemble, results, number):
     """RESULTS/decomposition/POINT/pass-N.exr: layers `bias` (signed) and `variance` (of one seed), a value a pixel and
     channel; R, G, B are the bias. Returns the file, or None without a reference."""
     halves = read_halves(ensemble, results, "total")
-    if halves is None:
+    if not halves:
         return None
     counts = ensemble.counts
     images = numpy.stack([ensemble.component(group, number, "total") for group in range(len(counts))])
@@ -286,7 +305,10 @@ def main(arguments):
         recorded = records.read_records(results)
         table = []
         for ensemble in read_ensembles(results):
-            table += table_of(ensemble, results, recorded)
+            own = rows_of(ensemble, recorded)
+            if own is None:
+                continue
+            table += table_of(ensemble, results, own)
             write_images(ensemble, results, max(ensemble.description["passes"]))
         write_table(results / "decomposition.csv", COLUMNS, table)
     except (records.RecordError, OSError) as error:

@@ -76,11 +76,17 @@ def recorded_radii(rows, last):
                      - 2 * math.log(means.iloc[0]))
 
 
-def predictions(rows, last):
-    """(variance_n / variance_1, bias_n / bias_1) for n = 1 to last; None for methods without a prediction."""
+def is_sampled(first, component):
+    """True for light that is a plain Monte Carlo mean: path tracing, and direct light by shadow rays."""
+    return first["integrator"] == "path" or (component == "direct" and first["direct"] == "sampled")
+
+
+def predictions(rows, component, last):
+    """(variance_n / variance_1, bias_n / bias_1) for n = 1 to last; None for methods without a prediction. Those of "total"
+    are of its gathered light; with_direct_light() adds the rest."""
     first = rows.iloc[0]
     number = numpy.arange(1, last + 1)
-    if first["integrator"] == "path":
+    if is_sampled(first, component):
         return 1 / number, None
     if first["integrator"] == "photonmapper":
         return (1 / number, numpy.ones(last)) if first["mode"] == "radius" else None
@@ -89,13 +95,28 @@ def predictions(rows, last):
     return numpy.cumsum(1 / squared) / number ** 2, numpy.cumsum(squared) / number
 
 
-def asymptotes(first):
+def with_direct_light(predicted, moments, region, number):
+    """The prediction of the whole picture: direct light by shadow rays adds its own variance, which falls as 1 / n. Shares
+    are those measured at pass `number`. `moments` are by component."""
+    if predicted is None or not moments.get("direct"):
+        return predicted
+    variance, bias = predicted
+    direct, gathered = (max(0.0, decomposition.decompose(moments[component][number, region])[0])
+                        for component in ["direct", "gathered"])
+    if direct + gathered == 0:
+        return predicted
+    passes = numpy.arange(1, len(variance) + 1)
+    return (direct * number / passes + gathered * variance / variance[number - 1]) / (direct + gathered), bias
+
+
+def asymptotes(first, component):
     """{quantity: (smooth, at edges)} of slopes; None where theory has none."""
     none = {quantity: (None, None) for quantity in decomposition.QUANTITIES}
-    if first["integrator"] == "path":
+    if is_sampled(first, component):
         return {**none, "variance": (-1.0, None), "mse": (-1.0, None)}
     if first["integrator"] == "photonmapper":
-        return {**none, "variance": (-1.0, None), "squared_bias": (0.0, 0.0)} if first["mode"] == "radius" else none
+        fixed = {"variance": (-1.0, None), "squared_bias": (0.0, 0.0), "mse": (0.0, None)}
+        return fixed if first["mode"] == "radius" else none
     alpha = float(first["alpha"])
     return {"variance": (-alpha, None), "squared_bias": (2 * (alpha - 1), (alpha - 1) / 2),
             "mse": (-min(alpha, 2 - 2 * alpha), None)}
@@ -116,8 +137,9 @@ def fit(moments, passes, predicted):
         if not resolved or not numpy.isfinite(left).all():
             results[quantity] = (None, None, None, expected, "cannot tell")
             continue
+        # Student's, since the error is estimated from as many groups.
         reach = stats.t.ppf(0.975, len(counts) - 1) * decomposition.jackknife_error(found, left, counts)
-        verdict = ("" if expected is None else "cannot tell" if 2 * reach > WIDEST
+        verdict = ("cannot tell" if 2 * reach > WIDEST else "" if expected is None
                    else "agrees" if abs(found - expected) <= reach else "differs")
         results[quantity] = (found, found - reach, found + reach, expected, verdict)
     return results
@@ -142,21 +164,25 @@ def predicted_slope(quantity, passes, first_values, predicted):
 
 
 def text(number):
-    return "" if number is None or not math.isfinite(number) else repr(float(number))
+    return "" if number is None else decomposition.text(number)
 
 
 def fits_of(ensemble, own, moments, component, window):
-    """The rows of fits.csv of one point and component."""
+    """The rows of fits.csv of one point and component. `moments` are by component."""
     first = own.iloc[0]
     passes = [number for number in sorted(ensemble.description["passes"]) if window[0] <= number <= window[1]]
     if len(passes) < 3:
-        raise records.RecordError(f"{ensemble.folder}: expected at least 3 recorded passes from {window[0]} to {window[1]}")
-    predicted = predictions(own, passes[-1])
+        print(f"{ensemble.folder}: fewer than 3 recorded passes from {window[0]} to {window[1]}, so no slopes")
+        return []
+    gathered = predictions(own, component, passes[-1])
     table = []
-    for region in dict.fromkeys(region for _, region in moments):
-        of_region = {number: moments[number, region] for number in passes}
+    for region in dict.fromkeys(region for _, region in moments[component]):
+        of_region = {number: moments[component].get((number, region)) for number in passes}
+        if None in of_region.values():    # no finite pixel
+            continue
+        predicted = with_direct_light(gathered, moments, region, passes[0]) if component == "total" else gathered
         for quantity, (found, low, high, expected, verdict) in fit(of_region, passes, predicted).items():
-            smooth, edge = asymptotes(first)[quantity]
+            smooth, edge = asymptotes(first, component)[quantity]
             table.append({
                 "experiment": first["experiment"], "scene": first["scene"], "point": ensemble.point,
                 **{column: first[column] for column in records.SETTINGS}, "component": component, "region": region,
@@ -167,17 +193,24 @@ def fits_of(ensemble, own, moments, component, window):
 
 
 def best_alphas(family, component):
-    """Rows of best-alphas.csv of points of one scene that differ in alpha alone: {alpha: (own records, {(pass, region):
-    Moments})}. All share their seeds, so differences are taken group by group."""
+    """Rows of best-alphas.csv of points of one scene that differ in alpha alone: {alpha: (own records, seeds by group,
+    {(pass, region): Moments})}. All share their seeds, so differences are taken group by group."""
     table = []
-    first_own, first_moments = next(iter(family.values()))
+    first_own, first_seeds, first_moments = next(iter(family.values()))
+    if any(seeds != first_seeds for _, seeds, _ in family.values()):
+        print(f"{first_own['scene'].iloc[0]}: alphas with other seeds or other slots than each other, so no best alpha")
+        return []
     for number, region in first_moments:
         if number == 0:
             continue
         found = {}
-        for alpha, (_, moments) in family.items():
+        for alpha, (_, _, moments) in family.items():
+            if (number, region) not in moments:
+                continue
             at = moments[number, region]
             found[alpha] = (decomposition.decompose(at)[2], decomposition.replicates(at)[:, 2], at.counts)
+        if len(found) < 2 or not all(numpy.isfinite(mse) for mse, *_ in found.values()):
+            continue
         order = sorted(found, key=lambda alpha: found[alpha][0])
         (least, least_without, counts), (second, second_without, _) = found[order[0]], found[order[1]]
         error = float(decomposition.jackknife_error(second - least, second_without - least_without, counts))
@@ -205,20 +238,23 @@ def main(arguments):
         recorded = records.read_records(options.results)
         table, families = [], {}
         for ensemble in decomposition.read_ensembles(options.results):
-            own = decomposition.rows_of_point(recorded, ensemble.point)
+            own = decomposition.rows_of(ensemble, recorded)
+            if own is None:
+                continue
             first = own.iloc[0]
             first_pass, last_pass = default_window(ensemble.description["passes"])
             window = (options.first or first_pass, options.last or last_pass)
-            for component in records.COMPONENTS:
-                if component == "emission":    # it has neither bias nor variance
-                    continue
-                moments = decomposition.moments_of(ensemble, options.results, component)
-                if not moments:
+            # Emission has neither bias nor variance.
+            moments = {component: decomposition.moments_of(ensemble, options.results, component)
+                       for component in records.COMPONENTS if component != "emission"}
+            for component in moments:
+                if not moments[component]:
                     continue
                 table += fits_of(ensemble, own, moments, component, window)
                 if first["integrator"] == "ppm":
                     rest = tuple(first[column] for column in ["scene", *records.SETTINGS] if column != "alpha")
-                    families.setdefault((rest, component), {})[first["alpha"]] = (own, moments)
+                    families.setdefault((rest, component), {})[first["alpha"]] = (own, ensemble.seeds,
+                                                                                  moments[component])
         decomposition.write_table(options.results / "fits.csv", FIT_COLUMNS, table)
         best = [row for (_, component), family in families.items() if len(family) > 1
                 for row in best_alphas(family, component)]

@@ -42,10 +42,10 @@ def methods_of(scene_rows, labels):
     return sorted(own, key=lambda label: ROW_ORDER.index(first_rows.loc[label]["integrator"]))
 
 
-def lit_by_scene(files):
-    """A reference with the lights themselves blacked out: what the exposure is chosen for. None without one."""
-    total, emission = (pictures.read_reference(files, component, False) for component in ["total", "emission"])
-    return total if emission is None else total * (emission.max(axis=2, keepdims=True) <= 0)
+def lit_by_scene(picture, snapshot):
+    """A picture with the lights themselves, which a snapshot shows apart, blacked out: what the exposure is chosen for."""
+    emission = pictures.read_component(snapshot, "emission")
+    return picture if emission is None else picture * (emission.max(axis=2, keepdims=True) <= 0)
 
 
 def collect(results, scene, rows, labels):
@@ -71,7 +71,8 @@ def collect(results, scene, rows, labels):
             files = records.reference_files(results, record)
             reference = pictures.read_reference(files, "total", False)
             if reference is not None:
-                exposure = pictures.exposure_for(lit_by_scene(files))
+                exposure = pictures.exposure_for(lit_by_scene(reference, results / "runs" / run /
+                                                              record["snapshots"][0]["file"]))
     if found and exposure is None:
         exposure = pictures.exposure_for(list(found[0][1].values())[-1][0])
     return found, reference, exposure

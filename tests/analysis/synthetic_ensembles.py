@@ -41,7 +41,8 @@ def write_reference(results, noise, random):
             "gathered": truth() + noise * random.standard_normal((HEIGHT, WIDTH, 3))})
 
 
-def write_ensemble(results, point, seeds, bias, deviation, random, slots=16, passes=PASSES, common=None):
+def write_ensemble(results, point, seeds, bias, deviation, random, slots=16, passes=PASSES, common=None,
+                   direct_deviation=lambda number: 0.0):
     """`bias(pass)` and `deviation(pass)` are numbers or arrays that go with an image; gathered light has both. `common`,
     {seed: array}, is the noise that points share, as methods over the same photons do."""
     groups = [seeds[slot::slots] for slot in range(slots) if seeds[slot::slots]]
@@ -49,7 +50,8 @@ def write_ensemble(results, point, seeds, bias, deviation, random, slots=16, pas
     for slot, group in enumerate(groups):
         layers = {"emission": numpy.zeros((HEIGHT, WIDTH, 3))}
         for number in passes:
-            layers[f"pass-{number:06}-direct"] = len(group) * truth()
+            layers[f"pass-{number:06}-direct"] = sum(
+                truth() + direct_deviation(number) * random.standard_normal((HEIGHT, WIDTH, 3)) for _ in group)
             layers[f"pass-{number:06}-gathered"] = sum(
                 truth() + bias(number) + deviation(number) *
                 (common[seed, number] if common else random.standard_normal((HEIGHT, WIDTH, 3))) for seed in group)

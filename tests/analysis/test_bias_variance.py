@@ -50,7 +50,8 @@ class BiasVariance(unittest.TestCase):
     def test_theory_starts_at_the_first_value_of_the_window(self):
         rows = bias_variance.read_decomposition(self.results)
         rows = rows[(rows["point"] == "box_alpha-0.9") & (rows["pass"] > 0)]
-        recorded = decomposition.rows_of_point(records.read_records(self.results), "box_alpha-0.9")
+        recorded = records.read_records(self.results)
+        recorded = recorded[recorded["run"].map(decomposition.point_of) == "box_alpha-0.9"]
         passes, values = bias_variance.theory_of(recorded, rows, "gathered", "image")
         self.assertEqual((passes[0], passes[-1]), (4, 128))
         at_first = rows[(rows["pass"] == 4) & (rows["region"] == "image") & (rows["component"] == "gathered")].iloc[0]

@@ -139,6 +139,55 @@ class Files(unittest.TestCase):
         self.assertEqual(row["reference_floor"], "")
         self.assertAlmostEqual(float(row["squared_bias"]), 0.02 ** 2, delta=4 * float(row["squared_bias_error"]) + 4e-5)
 
+    def test_a_pixel_that_is_not_finite_is_left_out(self):
+        bias = numpy.zeros((made.HEIGHT, made.WIDTH, 1))
+        made.write_ensemble(self.results, "box_ppm", [1, 2, 3, 4], lambda n: bias, lambda n: 0.1, self.random)
+        made.write_records(self.results, {"box_ppm": {}}, [1, 2, 3, 4])
+        whole = self.table()
+        bias[3, 5] = numpy.nan
+        made.write_ensemble(self.results, "box_ppm", [1, 2, 3, 4], lambda n: bias, lambda n: 0.1, self.random)
+        for row, before in zip(self.table(), whole):
+            lost = row["component"] in ["total", "gathered"] and row["region"] in ["image", "smooth"]
+            self.assertEqual(int(row["pixels"]), int(before["pixels"]) - lost)
+            self.assertNotEqual(row["mse"], "")
+
+    def test_without_a_reference_there_is_still_a_variance(self):
+        made.write_ensemble(self.results, "box_ppm", [1, 2, 3], lambda n: 0.0, lambda n: 0.1, self.random)
+        description = self.results / "ensembles/box_ppm/ensemble.json"
+        description.write_text(description.read_text().replace('{"path": "reference"}', "null"))
+        made.write_records(self.results, {"box_ppm": {}}, [1, 2, 3])
+        row = [row for row in self.table() if row["component"] == "gathered" and row["region"] == "image"][-1]
+        self.assertAlmostEqual(float(row["variance"]), 0.01, delta=4 * float(row["variance_error"]))
+        self.assertEqual((row["squared_bias"], row["mse"], row["reference_floor"]), ("", "", ""))
+
+    def test_what_does_not_fit_the_records_is_refused(self):
+        made.write_ensemble(self.results, "box_ppm", [1, 2, 3], lambda n: 0.0, lambda n: 0.1, self.random)
+        folder = self.results / "ensembles/box_ppm"
+        whole = (folder / "ensemble.json").read_text()
+
+        def refusal():
+            code, _, errors = synthetic.run(decomposition, self.results)
+            self.assertEqual(code, 2)
+            return errors
+        made.write_records(self.results, {"box_ppm": {}}, [1, 2, 3, 4])
+        self.assertIn("lacks seeds that iterations.csv has", refusal())
+        made.write_records(self.results, {"box_ppm": {}}, [1, 2, 3])
+        (folder / "ensemble.json").write_text(whole.replace("[16, 12, 32, 24]", "[16, 12, 33, 24]"))
+        self.assertIn("expected the region edge inside 32x24 pixels", refusal())
+        (folder / "ensemble.json").write_text(whole.replace('{"path": "reference"}', '{"path": "elsewhere"}'))
+        self.assertIn("its reference elsewhere is not there", refusal())
+        (folder / "ensemble.json").write_text(whole)
+        (folder / "slot-07.exr").write_bytes((folder / "slot-00.exr").read_bytes())
+        self.assertIn("expected each seed in one slot", refusal())
+
+    def test_a_point_that_is_not_in_the_records_is_left_out_in_words(self):
+        for point in ["box_ppm", "box_old"]:
+            made.write_ensemble(self.results, point, [1, 2, 3], lambda n: 0.0, lambda n: 0.1, self.random)
+        made.write_records(self.results, {"box_ppm": {}}, [1, 2, 3])
+        code, output, _ = synthetic.run(decomposition, self.results)
+        self.assertEqual(code, 0)
+        self.assertIn("box_old: has no runs in iterations.csv; left out", output)
+
     def test_what_cannot_be_split_is_refused(self):
         made.write_records(self.results, {"box_ppm": {}}, [1, 2])
         self.assertIn("has no ensembles", synthetic.run(decomposition, self.results)[2])

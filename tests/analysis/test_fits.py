@@ -116,6 +116,36 @@ class Fits(unittest.TestCase):
         self.assertAlmostEqual(float(row["predicted"]), fits.slope(passes, expected[passes - 1]), places=9)
         self.assertEqual((row["first_pass"], row["last_pass"]), ("1", "128"))
 
+    def test_direct_light_by_shadow_rays_falls_as_one_over_n(self):
+        variance, bias = self.knaus_zwicker(0.7)
+        seeds = list(range(1, 17))
+        made.write_ensemble(self.results, "box", seeds, lambda n: 0.1 * bias(n), lambda n: 0.2 * variance(n) ** 0.5,
+                            self.random, direct_deviation=lambda n: 0.2 / max(1, n) ** 0.5)
+        made.write_records(self.results, {"box": {"alpha": "0.7", "schedule": "knaus-zwicker"}}, seeds)
+        table, _ = self.run_fits()
+        rows = {row["component"]: row for row in table if row["quantity"] == "variance" and row["region"] == "image"}
+        self.assertEqual((rows["direct"]["asymptote"], rows["direct"]["verdict"]), ("-1.0", "agrees"))
+        self.assertAlmostEqual(float(rows["direct"]["predicted"]), -1)
+        self.assertEqual(rows["total"]["verdict"], "agrees")
+        passes = numpy.array([4, 8, 16, 32, 64, 128])
+        expected = 0.04 / passes + 0.04 * numpy.array([variance(n) for n in passes])
+        self.assertAlmostEqual(float(rows["total"]["predicted"]), fits.slope(passes, expected), delta=0.01)
+
+    def test_alphas_with_other_seeds_have_no_best(self):
+        for alpha, seeds in [("0.5", [1, 2, 3]), ("0.7", [2, 1, 3])]:
+            made.write_ensemble(self.results, f"box_alpha-{alpha}", seeds, lambda n: 0.0, lambda n: 0.1, self.random)
+        made.write_records(self.results, {f"box_alpha-{alpha}": {"alpha": alpha} for alpha in ["0.5", "0.7"]}, [1, 2, 3])
+        code, output, _ = synthetic.run(fits, self.results)
+        self.assertEqual(code, 0)
+        self.assertIn("so no best alpha", output)
+
+    def test_a_short_run_has_no_slopes(self):
+        made.write_ensemble(self.results, "box", [1, 2, 3], lambda n: 0.0, lambda n: 0.1, self.random, passes=[0, 1, 2, 4])
+        made.write_records(self.results, {"box": {}}, [1, 2, 3], passes=[0, 1, 2, 4])
+        code, output, _ = synthetic.run(fits, self.results)
+        self.assertEqual(code, 0)
+        self.assertIn("fewer than 3 recorded passes from 4 to 4, so no slopes", output)
+
     def test_the_best_alpha_is_named_and_a_tie_is_not(self):
         seeds = list(range(1, 17))
         noise = {(seed, number): self.random.standard_normal((made.HEIGHT, made.WIDTH, 3)) for seed in seeds
