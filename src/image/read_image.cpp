@@ -17,8 +17,9 @@ ColorImage read_color_image(const std::filesystem::path& file, bool raw) {
     const OIIO::ImageSpec& spec = input->spec();
     constexpr int largest = 1 << 15;
     if (spec.width < 1 || spec.height < 1 || spec.width > largest || spec.height > largest || spec.nchannels < 1)
-        throw InputError(file.string(), fmt::format("expected an image of 1 to {} pixels a side, got {} x {} with {} channels",
-                                                    largest, spec.width, spec.height, spec.nchannels));
+        throw InputError(file.string(),
+                         fmt::format("expected an image of 1 to {} pixels a side, got {} x {} with {} channels",
+                                     largest, spec.width, spec.height, spec.nchannels));
     const auto channels = static_cast<std::size_t>(spec.nchannels);
     const std::size_t count = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
     std::vector<float> values(count * channels);
@@ -30,8 +31,7 @@ ColorImage read_color_image(const std::filesystem::path& file, bool raw) {
     for (std::size_t pixel = 0; pixel < count; ++pixel)
         for (std::size_t channel = 0; channel < 3; ++channel) {
             const float value = values[pixel * channels + (channels >= 3 ? channel : 0)];
-            image.pixels[pixel][static_cast<int>(channel)] =
-                decode ? static_cast<float>(srgb_to_linear(value)) : value;
+            image.pixels[pixel][static_cast<int>(channel)] = decode ? static_cast<float>(srgb_to_linear(value)) : value;
         }
     return image;
 }

@@ -16,8 +16,8 @@ struct ColorImage {
     std::vector<Color> pixels;  ///< width * height, linear RGB; grey is repeated, further channels are left out
 };
 
-/// Reads `file`. Values stored as integers are scaled to [0, 1] and decoded from sRGB, unless `raw`; floating-point ones
-/// are taken as linear. Throws InputError.
+/// Reads `file`. Values stored as integers are scaled to [0, 1] and decoded from sRGB, unless `raw`; floating-point
+/// ones are taken as linear. Throws InputError.
 ColorImage read_color_image(const std::filesystem::path& file, bool raw);
 
 /// sRGB's decoding (IEC 61966-2-1), for values in [0, 1].

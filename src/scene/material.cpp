@@ -5,7 +5,9 @@ namespace photonlab {
 namespace {
 
 template <typename B>
-concept Specular = requires(const B& bsdf, const Vector& outgoing) { bsdf.branches(outgoing, Carried::Flux); };
+concept Specular = requires(const B& bsdf, const Vector& outgoing) {
+    bsdf.branches(outgoing, Carried::Flux);
+};
 
 /// Draws a branch with the probability of its share of the strongest channel.
 std::optional<BsdfSample> choose_branch(const SpecularBranches& branches, float u) {

@@ -13,8 +13,8 @@ namespace photonlab {
 struct MaterialSource {
     /// The element itself, or the one that a <ref> names.
     std::function<const XmlElement&(const XmlElement&)> resolve;
-    std::string& bytes_read;                         ///< takes the bytes of every file that is read
-    std::function<void(const std::string&)> note;    ///< takes what the user should know, a sentence each
+    std::string& bytes_read;                       ///< takes the bytes of every file that is read
+    std::function<void(const std::string&)> note;  ///< takes what the user should know, a sentence each
 };
 
 /// The material, without its id. Throws InputError.

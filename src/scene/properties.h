@@ -25,7 +25,8 @@ public:
     std::optional<bool> boolean(const std::string& name);
     std::optional<std::string> text(const std::string& name);
     std::optional<std::variant<double, std::string>> number_or_text(const std::string& name);
-    /// Linear RGB, from rgb, srgb, spectrum or float; what a spectrum is depends on whether it reflects, emits or refracts.
+    /// Linear RGB, from rgb, srgb, spectrum or float; what a spectrum is depends on whether it reflects, emits or
+    /// refracts.
     std::optional<ColorD> reflectance(const std::string& name);
     std::optional<ColorD> emission(const std::string& name);
     std::optional<ColorD> index_of_refraction(const std::string& name);

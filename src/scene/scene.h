@@ -136,8 +136,8 @@ bool is_occluded(const Scene& scene, const Vector& from, const Vector& to);
 
 /// A surface point turned to the side that a direction came from, ready to be shaded.
 struct Surface {
-    Bsdf bsdf;                ///< as seen from `outgoing`'s side, textures looked up
-    std::uint32_t material;   ///< index into Scene::materials
+    Bsdf bsdf;               ///< as seen from `outgoing`'s side, textures looked up
+    std::uint32_t material;  ///< index into Scene::materials
     Imath::V2f texture_coordinate;
     Frame frame;              ///< around the shading normal, which faces `outgoing`
     Vector geometric_normal;  ///< unit, facing `outgoing` too

@@ -15,8 +15,8 @@ Color Texture::color_at(const Imath::V2f& texture_coordinate) const {
         const auto wrap = [](double index, int size) {
             return static_cast<std::size_t>((static_cast<int>(index) + size) % size);
         };
-        return ColorD(image.pixels[wrap(row, image.height) * static_cast<std::size_t>(image.width) +
-                                   wrap(column, image.width)]);
+        return ColorD(
+            image.pixels[wrap(row, image.height) * static_cast<std::size_t>(image.width) + wrap(column, image.width)]);
     };
     const double right_share = x - left;
     const double bottom_share = y - top;

@@ -92,10 +92,11 @@ HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int thread
             if (max_channel(throughput) < smallest_branch_weight || branch.edges == edge_cap)
                 tile.weight_cut += mean_channel(ColorD(throughput)) * static_cast<double>(share);
             else
-                next.push_back({{offset_from_surface(surface->position, surface->geometric_normal, direction), direction},
-                                throughput,
-                                distance,
-                                branch.edges + 1});
+                next.push_back(
+                    {{offset_from_surface(surface->position, surface->geometric_normal, direction), direction},
+                     throughput,
+                     distance,
+                     branch.edges + 1});
         }
     };
 

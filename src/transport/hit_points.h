@@ -44,7 +44,7 @@ struct HitPoints {
     int samples_per_pixel = 1;
     std::vector<HitPoint> points;  ///< tile by tile, so that neighbours in the list are neighbours in space
     std::vector<float>
-        footprints;                ///< one a point, unit box: unfolded distance from the camera times the pixel's angle
+        footprints;  ///< one a point, unit box: unfolded distance from the camera times the pixel's angle
     std::vector<SeenEmission> emission;
     double weight_cut = 0.0;      ///< throughput of the branches that were ended, mean channel, mean over pixels
     std::uint64_t nonfinite = 0;  ///< camera paths that met a non-finite value

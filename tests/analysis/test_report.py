@@ -172,6 +172,14 @@ class Page(InFolder):
                          [False, True, False, True])
         self.assertNotIn("best-alphas.csv", text)
 
+    def test_settings_in_tables_of_other_tools_are_named_by_the_method(self):
+        make_results(self.results)
+        columns = ["scene", "point", *synthetic.records.SETTINGS, "slope"]
+        lines = [",".join({**synthetic.BASE, **settings, "point": "p", "slope": slope}[column] for column in columns)
+                 for settings, slope in [(synthetic.PM_RADIUS, "-0.25"), ({"alpha": "0.7"}, "-0.5")]]
+        (self.results / "fits.csv").write_text("\n".join([",".join(columns), *lines]) + "\n")
+        self.assertEqual(self.row_of(self.written_page(), "Fits (fits.csv)", "PM, radius"), ["PM, radius", "−0.25"])
+
     def test_what_is_missing_is_said(self):
         make_results(self.results, passes=(), reference=None)
         text = self.written_page()

@@ -40,10 +40,13 @@ TEST(Diffuse, StretchesSolidAngleByTheInverseOfItsDensity) {
     const Bsdf material = diffuse(Color(0.5f));
     const float h = 1e-3f;
     for (const Imath::V2f& u : {Imath::V2f(0.2f, 0.3f), Imath::V2f(0.7f, 0.4f), Imath::V2f(0.6f, 0.9f)}) {
-        const auto at = [&](float x, float y) { return VectorD(sample(material, outgoing, Carried::Radiance, {x, y})->incoming); };
+        const auto at = [&](float x, float y) {
+            return VectorD(sample(material, outgoing, Carried::Radiance, {x, y})->incoming);
+        };
         const VectorD along_x = (at(u.x + h, u.y) - at(u.x - h, u.y)) / (2.0 * h);
         const VectorD along_y = (at(u.x, u.y + h) - at(u.x, u.y - h)) / (2.0 * h);
-        EXPECT_NEAR(along_x.cross(along_y).length() * sample(material, outgoing, Carried::Radiance, u)->density, 1.0, 0.01);
+        EXPECT_NEAR(along_x.cross(along_y).length() * sample(material, outgoing, Carried::Radiance, u)->density, 1.0,
+                    0.01);
     }
 }
 

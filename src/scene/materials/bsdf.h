@@ -33,7 +33,9 @@ struct SpecularBranches {
     std::array<SpecularBranch, 2> branch;
     int count = 0;
 
-    void add(const Vector& incoming, const Color& weight) { branch[static_cast<std::size_t>(count++)] = {incoming, weight}; }
+    void add(const Vector& incoming, const Color& weight) {
+        branch[static_cast<std::size_t>(count++)] = {incoming, weight};
+    }
     const SpecularBranch* begin() const { return branch.data(); }
     const SpecularBranch* end() const { return branch.data() + count; }
 };

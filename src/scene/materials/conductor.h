@@ -1,4 +1,5 @@
-// A polished metal, or a perfect mirror: light is reflected in one direction, by Fresnel's equations for a complex index.
+// A polished metal, or a perfect mirror: light is reflected in one direction, by Fresnel's equations for a complex
+// index.
 
 #pragma once
 
