@@ -163,7 +163,7 @@ class Page(InFolder):
         make_results(self.results)
         (self.results / "fits.csv").write_text("scene,method,slope\nbox,a<b,-0.6666666\nbox,PPM,0.5\n")
         (self.results / "decomposition.csv").write_text(
-            "scene,method,pass,variance\nbox,PM,1,0.0711\nbox,PM,64,0.0722\nbox,PPM,1,0.0733\nbox,PPM,32,0.0744\n")
+            "scene,point,pass,variance\nbox,PM,1,0.0711\nbox,PM,64,0.0722\nbox,PPM,1,0.0733\nbox,PPM,32,0.0744\n")
         text = self.written_page()
         self.assertEqual(self.row_of(text, "Fits (fits.csv)", "a<b"), ["a<b", "−0.667"])
         self.assertIn("in all rows scene = box", text)

@@ -1,0 +1,472 @@
+"""Makes one page of a results folder: RESULTS/report.html, with tables of errors and costs, the figures, every run's
+settings, and the images themselves in a viewer that flips, wipes and subtracts them.
+
+The page is a single file without anything to load, so that it can be mailed, archived or attached to a paper. Errors
+are those of each method's last pass: RMSE is the root of the mean over seeds of `mse_unbiased`. What the folder does
+not have (figures, snapshots, a reference) is said at the top of the page.
+
+The viewer is given radiance, not pictures: its exposure acts before sRGB's transfer function. A pixel is three half
+floats, scaled by a power of two such that white at the scene's usual exposure is near 1. They tell 2000 levels a stop
+from 14 stops below white on, where a screen tells 90 at most, so that nothing bands. An image is all low bytes and then
+all high bytes of its halves (these two compress apart better), by channel, deflated, in base64.
+"""
+
+import argparse
+import base64
+import json
+import math
+import sys
+import zlib
+from html import escape
+from pathlib import Path
+
+try:
+    import gallery
+    import numpy
+    import pandas
+    import pictures
+    import records
+    import strip
+    import style
+except ImportError as error:
+    print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas, matplotlib and OpenImageIO (on "
+          "Debian: /usr/bin/python3 with python3-pandas, python3-matplotlib and python3-openimageio)", file=sys.stderr)
+    sys.exit(2)
+
+HERE = Path(__file__).parent
+COMPONENT_NAMES = {"total": "whole image", "emission": "emission", "direct": "direct", "gathered": "gathered"}
+COUNTERS = ["paths_emitted", "photons_stored", "photons_gathered"]
+MEMORY = ["map_bytes", "hit_point_bytes", "peak_rss_mib"]
+DERIVED_TABLES = {"fits.csv": "Fits", "best-alphas.csv": "Best alphas",
+                  "decomposition.csv": "Variance and squared bias"}
+LARGEST_HALF = 65504.0
+NOTHING = "–"
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+# Cells and tables. A cell is what is shown and, in a column of numbers, the number that it is sorted by.
+
+def three_digits(value):
+    """0.00331, −12.5, 6,400,000, 2.40·10⁻⁷."""
+    if value == 0 or not math.isfinite(value):
+        return f"{value:g}"
+    if 1e-4 <= abs(value) < 1e3:
+        return f"{value:#.3g}".rstrip(".").replace("-", "−")
+    if 1e3 <= abs(value) < 1e12:
+        return f"{value:,.0f}".replace("-", "−")
+    mantissa, exponent = f"{value:.2e}".split("e")
+    return f"{mantissa}·10{str(int(exponent)).translate(SUPERSCRIPTS)}".replace("-", "−")
+
+
+def number(value, shown=None):
+    return (NOTHING if math.isnan(value) else shown or three_digits(value), value)
+
+
+def cells(texts):
+    """A column of a CSV: numbers where all that is not empty is one, as they were written where all are short."""
+    values = pandas.to_numeric(texts, errors="coerce")
+    if (values.isna() & ~texts.str.lower().isin(["", "nan", "-nan"])).any():
+        return list(texts)
+    short = texts.str.len().max() <= 6
+    return [number(value, text.replace("-", "−") if short else None) for value, text in zip(values, texts)]
+
+
+def whole(value):
+    return number(value, f"{value:,.0f}")
+
+
+def table(caption, note, groups, columns, rows):
+    """A sortable table. `note` is small print after the caption; `groups` are (heading, how many columns it spans)
+    above the columns, or nothing. A row's cells are texts, or pairs of text and number."""
+    numeric = [any(isinstance(row[place], tuple) for row in rows) for place in range(len(columns))]
+
+    def body_cell(cell):
+        if not isinstance(cell, tuple):
+            return f"<td>{escape(cell)}</td>"
+        shown, value = cell
+        kind = "number words" if " " in shown else "number"
+        return f'<td class="{kind}" data-value="{"" if math.isnan(value) else repr(float(value))}">{escape(shown)}</td>'
+
+    above = "".join(f'<th colspan="{span}"{" class=group" if heading else ""}>{escape(heading)}</th>'
+                    for heading, span in groups)
+    heads = "".join(f'<th scope="col"{" class=number" if is_number else ""}><button type="button">'
+                    f'{escape(name).replace("_", "_<wbr>")}</button></th>' for name, is_number in zip(columns, numeric))
+    lines = "\n".join(f"<tr>{''.join(map(body_cell, row))}</tr>" for row in rows)
+    return (f'<div class="wide"><table class="sortable"><caption>{escape(caption)}'
+            f'{f"<span>{escape(note)}</span>" if note else ""}</caption>\n<thead>'
+            f"{f'<tr>{above}</tr>' if above else ''}<tr>{heads}</tr></thead>\n<tbody>\n{lines}\n</tbody></table></div>")
+
+
+# What the records say.
+
+def read_runs(results, rows, missing):
+    """run.json by run, for the runs of the records that have one."""
+    runs, without = {}, []
+    for run in rows["run"].unique():
+        if (results / "runs" / run / "run.json").is_file():
+            runs[run] = records.read_run(results, run)
+        else:
+            without.append(run)
+    if without:
+        missing.append(f"No run.json, so neither settings nor images, of {len(without)} of {rows['run'].nunique()} "
+                       f"runs: {', '.join(without[:3])}{', …' if len(without) > 3 else '.'}")
+    return runs
+
+
+def found(record, *keys):
+    """A value inside run.json as text; "" where there is none."""
+    for key in keys:
+        record = record.get(key) if isinstance(record, dict) else None
+    return "" if record is None else str(record)
+
+
+def distinct(texts):
+    return list(dict.fromkeys(filter(None, texts)))
+
+
+def last_pass(rows):
+    """The rows of the last pass that all of a method's seeds recorded; none where they have no pass in common. `rows`
+    are those of one scene, method and component."""
+    curve = records.aggregate_over_seeds(rows, "mse")
+    return rows[rows["pass"] == curve.index.max()]
+
+
+def rmse_cell(rows):
+    value = rows[records.error_column(rows)].mean(skipna=False)
+    if math.isnan(value):
+        return number(value)
+    root = records.root(value)
+    return (three_digits(root) if value > 0 else "below resolution", root if value > 0 else 0.0)
+
+
+def result_tables(scene, rows, labels):
+    """Errors and costs of a scene's methods at their last passes, as two tables."""
+    errors, costs = [], []
+    for label in labels:
+        components = {component: last_pass(of_component) for component, of_component in
+                      rows[rows["method"] == label].groupby("component", sort=False)}
+        last = components.get("total", next(iter(components.values())))
+        if last.empty:
+            continue
+        start = [label, whole(last["pass"].iloc[0]), number(last["seconds"].mean())]
+        present = [components.get(component, rows.iloc[:0]) for component in COMPONENT_NAMES]
+        errors.append(start + [rmse_cell(of_component) for of_component in present] +
+                      [number(of_component["relmse"].mean(skipna=False)) for of_component in present])
+        peaks = last[MEMORY].max() / [2 ** 20, 2 ** 20, 1]
+        costs.append(start + [whole(last["seed"].nunique())] + [whole(last[counter].mean()) for counter in COUNTERS] +
+                     [number(peaks[column]) for column in MEMORY])
+    start = ["method", "pass", "seconds"]
+    names = list(COMPONENT_NAMES.values())
+    biased = rows["mse"].notna().any() and records.error_column(rows) == "mse"
+    noise = "the reference's own noise is in the RMSE" if biased else ""
+    return (table(f"{scene}: errors of the last pass", noise, [("", 3), ("RMSE", 4), ("relMSE", 4)],
+                  start + names + names, errors) +
+            table(f"{scene}: costs of a seed up to there", "", [("", 4), ("photons", 3), ("largest memory, MiB", 3)],
+                  start + ["seeds", "paths emitted", "stored", "gathered", "photon map", "hit points", "process"],
+                  costs))
+
+
+def derived_table(file, title, recorded):
+    """A CSV that another tool of the analysis wrote. Settings are named by the method that `recorded` gives them, and
+    what is the same in all rows is said once, above."""
+    rows = records.read_table(file)
+    notes = []
+    if file.name == "decomposition.csv" and "pass" in rows.columns and not rows.empty:
+        passes = records.to_numbers(file, rows["pass"], whole=True)
+        owner = [rows[column] for column in ["scene", "point"] if column in rows.columns]
+        last = passes.groupby(owner).transform("max") if owner else passes.max()
+        rows = rows[passes == last]
+        notes.append("the last pass alone; the file has all of them")
+    settings = ["scene", *records.SETTINGS]
+    if set(settings) <= set(rows.columns):
+        known = recorded[[*settings, "method"]].drop_duplicates()
+        methods = rows[settings].merge(known, on=settings, how="left")["method"]
+        rows = rows.assign(point=methods.fillna("").to_numpy()).rename(columns={"point": "method"})
+        rows = rows.drop(columns=records.SETTINGS)
+    rows = rows[[column for column in rows.columns if (rows[column] != "").any()]]
+    if len(rows.drop_duplicates()) > 1:
+        same = [column for column in rows.columns if rows[column].nunique() == 1]
+        if same:
+            values = [cells(rows[column].iloc[:1])[0] for column in same]
+            notes.append("in all rows " + ", ".join(f"{column} = {value[0] if isinstance(value, tuple) else value}"
+                                                    for column, value in zip(same, values)))
+        rows = rows.drop(columns=same)
+    if rows.empty:
+        return f"<p>{escape(file.name)} has no rows.</p>"
+    return table(f"{title} ({file.name})", "; ".join(notes), [], list(rows.columns),
+                 list(zip(*(cells(rows[column]) for column in rows.columns))))
+
+
+# Images for the viewer.
+
+def encoded(image, scale):
+    """Radiance as the viewer reads it; how is told at the top of this file."""
+    scaled = image * scale
+    halves = numpy.where(numpy.isinf(scaled), scaled, numpy.clip(scaled, -LARGEST_HALF, LARGEST_HALF))
+    planes = halves.astype("<f2").transpose(2, 0, 1).copy().view(numpy.uint8).reshape(-1, 2)
+    return base64.b64encode(zlib.compress(planes.T.tobytes(), 9)).decode()
+
+
+def snapshots(results, rows, labels, runs, missing, name):
+    """[(method, pass, image, caption, file)] of each method's lowest seed."""
+    shown = []
+    for label in labels:
+        of_method = rows[rows["method"] == label]
+        of_run = of_method[of_method["seed"] == of_method["seed"].min()]
+        run = of_run["run"].iloc[0]
+        before = len(shown)
+        for snapshot in runs[run]["snapshots"] if run in runs else []:
+            file = results / "runs" / run / snapshot["file"]
+            if file.is_file():
+                of_pass = of_run[(of_run["pass"] == snapshot["pass"]) & (of_run["component"] == "total")]
+                caption = gallery.caption(of_pass) if len(of_pass) else ""
+                shown.append((label, snapshot["pass"], pictures.read_component(file, "total"), caption, file))
+        if len(shown) == before and run in runs:
+            missing.append(f"{name}: no snapshots of {label} (seed {of_run['seed'].iloc[0]:.0f}).")
+    return shown
+
+
+def references(results, rows, runs, missing, name):
+    """{path: (image, its first file)} of the references that the runs were judged by."""
+    read = {}
+    for run in rows["run"].unique():
+        path = found(runs.get(run, {}), "reference", "path")
+        if path and path not in read:
+            files = records.reference_files(results, runs[run])
+            read[path] = (pictures.read_reference(files, "total", False), files[0]) if files else None
+    missing += [f"{name}: the reference is not found at {path}." for path, image in read.items() if image is None]
+    if not read and any(run in runs for run in rows["run"]):
+        missing.append(f"{name}: no reference, so no errors.")
+    return {path: image for path, image in read.items() if image is not None}
+
+
+def viewer_scene(results, name, rows, labels, runs, missing):
+    """A scene for the viewer, its images all of one size; None without images."""
+    shown = snapshots(results, rows, labels, runs, missing, name)
+    judges = references(results, rows, runs, missing, name)
+    images = [(f"{label}, pass {number}", label, image, caption, file) for label, number, image, caption, file in shown]
+    images += [("reference" if len(judges) == 1 else f"reference {path}", "reference", image, "", file)
+               for path, (image, file) in judges.items()]
+    if not images:
+        return None
+    first, first_file = images[0][2], images[0][4]
+    for *_, image, _, file in images:
+        if image.shape != first.shape:
+            raise records.RecordError(f"{file}: differs in size from {first_file}")
+    exposure = pictures.exposure_for(gallery.lit_by_scene(images[-1][2], first_file))
+    scale = 2.0 ** round(math.log2(exposure))
+    return {"name": name, "width": first.shape[1], "height": first.shape[0], "scale": scale, "exposure": exposure,
+            "images": [{"name": image_name, "group": group, "caption": caption, "pixels": encoded(image, scale)}
+                       for image_name, group, image, caption, _ in images]}
+
+
+def viewer_scenes(results, rows, labels, runs, missing):
+    """Every scene's images. Only images of one size can be compared, so a scene of several sizes is several here."""
+    scenes = []
+    for scene, of_scene in rows.groupby("scene", sort=False):
+        sizes = of_scene.groupby(["width", "height"], sort=False)
+        for (width, height), of_size in sizes:
+            name = scene if sizes.ngroups == 1 else f"{scene}, {width} × {height}"
+            own_labels = [label for label in labels if label in set(of_size["method"])]
+            scenes.append(viewer_scene(results, name, of_size, own_labels, runs, missing))
+    return [scene for scene in scenes if scene]
+
+
+# The page.
+
+VIEWER = """
+<section id="images">
+<h2>Images</h2>
+<noscript><p>The images are shown by JavaScript, which is off.</p></noscript>
+<div id="viewer">
+<div>
+<div id="stage">
+<div id="picture" tabindex="0" role="group" aria-describedby="keys"
+     aria-label="The images A and B. Arrow keys move the pixel whose values are shown.">
+<canvas></canvas><div id="divider"></div><div id="pixel"></div><span id="left-tag"></span><span id="right-tag"></span>
+</div>
+</div>
+<p id="legend"></p>
+<div id="scale-of-difference"><span></span><canvas width="255" height="1"></canvas><span></span></div>
+</div>
+<div id="controls">
+<label>Scene <select id="scene"></select></label>
+<label>A <select id="image-a"></select></label>
+<label>B <select id="image-b"></select></label>
+<fieldset><legend>Compare</legend>
+<label><input type="radio" name="mode" value="flip" checked> flip</label>
+<label><input type="radio" name="mode" value="wipe"> wipe</label>
+<label><input type="radio" name="mode" value="difference"> difference</label>
+</fieldset>
+<div class="of-flip"><button type="button" id="flip">Flip to B</button></div>
+<label class="of-wipe">Divider <input type="range" id="divider-place" min="0" step="1"><output></output></label>
+<label class="of-difference">Map <select id="map"><option value="signed">A − B, mean of R, G, B</option>
+<option value="absolute">|A − B|, each channel</option></select></label>
+<label class="of-difference">Gain <input type="range" id="gain" min="0" max="10" step="1" value="4">
+<output></output></label>
+<label>Exposure <input type="range" id="exposure" min="-8" max="8" step="0.25" value="0"><output></output></label>
+<label>Zoom <input type="range" id="zoom" min="1" max="16" step="1"><output></output></label>
+<table id="values"><caption></caption><thead><tr><th></th><th>R</th><th>G</th><th>B</th></tr></thead>
+<tbody><tr><th scope="row">A</th><td></td><td></td><td></td></tr>
+<tr><th scope="row">B</th><td></td><td></td><td></td></tr>
+<tr><th scope="row">A − B</th><td></td><td></td><td></td></tr></tbody></table>
+<p id="keys" class="small">Over the picture: <kbd>space</kbd> flips, <kbd>w</kbd> wipes, <kbd>d</kbd> subtracts. In
+wipe mode the divider follows the mouse. After a click or <kbd>tab</kbd> to the picture, arrow keys move the pixel.</p>
+</div>
+</div>
+<p class="small">Radiance (whole image, each method's lowest seed) in half floats: values and differences are exact to
+0.05% of a pixel's radiance. Pixels that are not a number are magenta.</p>
+</section>
+"""
+
+
+def facts(rows, runs):
+    """Who, when and with what, as a list of terms."""
+    starts = sorted(distinct(found(record, "started") for record in runs.values()))
+    days = distinct(start[:10] for start in ([starts[0], starts[-1]] if starts else []))
+
+    def joined(separator, *places):
+        return distinct(separator.join(filter(None, (found(record, *place) for place in places)))
+                        for record in runs.values())
+
+    extent = " · ".join(f"{count} {what}{'' if count == 1 else 's'}" for count, what in
+                        [(rows["scene"].nunique(), "scene"), (rows["method"].nunique(), "method"),
+                         (rows["seed"].nunique(), "seed"), (rows["run"].nunique(), "run")])
+    listed = [("Experiment", distinct(rows["experiment"])), ("Extent", [extent]), ("Date", [" to ".join(days)]),
+              ("Program", joined(" ", ("program", "name"), ("program", "version"), ("program", "commit"))),
+              ("Compiler", joined(" ", ("program", "compiler"), ("program", "compiler_flags"))),
+              ("Processor", joined("", ("processor",))), ("Threads", distinct(rows["threads"]))]
+    return "<dl>" + "".join(f"<dt>{escape(term)}</dt><dd>{'<br>'.join(map(escape, texts))}</dd>"
+                            for term, texts in listed if any(texts)) + "</dl>"
+
+
+def scene_table(rows, runs):
+    lines = []
+    for scene, of_scene in rows.groupby("scene", sort=False):
+        own = [runs[run] for run in of_scene["run"].unique() if run in runs]
+        images = distinct(f"{row['width']} × {row['height']}, {row['samples_per_pixel']} a pixel"
+                          for _, row in of_scene.drop_duplicates(["width", "height", "samples_per_pixel"]).iterrows())
+        floor = of_scene[of_scene["component"] == "total"]["reference_floor"].max()
+        lines.append([scene, "; ".join(distinct(found(record, "scene", "file") for record in own)) or NOTHING,
+                      "; ".join(images), "; ".join(distinct(found(record, "reference", "path") for record in own)) or
+                      NOTHING, number(records.root(floor))])
+    return table("Scenes", "the noise is the reference's own RMSE", [],
+                 ["scene", "file", "image, samples", "reference", "its noise"], lines)
+
+
+def figures(results, missing):
+    files = sorted((results / "figures").glob("*.png"))
+    if not files:
+        missing.append("No figures: RESULTS/figures has no PNG. The other tools of analysis/ draw them.")
+        return ""
+    shown = "\n".join(f'<figure><img alt="{escape(file.name)}" src="data:image/png;base64,'
+                      f'{base64.b64encode(file.read_bytes()).decode()}"><figcaption>{escape(file.name)}</figcaption>'
+                      "</figure>" for file in files)
+    return f'<section id="figures"><h2>Figures</h2>{shown}</section>'
+
+
+def flattened(value, name=""):
+    """[("settings.alpha", 0.7), ...] of the objects in run.json; lists stay whole."""
+    if not isinstance(value, dict):
+        return [(name, value)]
+    return [line for key, inner in value.items() for line in flattened(inner, f"{name}.{key}" if name else key)]
+
+
+def settings(runs):
+    """Every run's run.json, folded; what is null does not apply to the run."""
+    folded = []
+    for run, record in runs.items():
+        texts = [(name, value if isinstance(value, str) else json.dumps(value))
+                 for name, value in flattened(record) if value is not None]
+        lines = "".join(f"<dt>{escape(name)}</dt><dd>{escape(text)}</dd>" for name, text in texts)
+        folded.append(f"<details><summary>{escape(run)}</summary><dl>{lines}</dl></details>")
+    return f'<section id="settings"><h2>Settings of the runs</h2>{"".join(folded)}</section>' if folded else ""
+
+
+def inlined(data):
+    """JSON that no text in it can end early: `</script>` in a name is only an escape."""
+    return json.dumps(data, ensure_ascii=False).replace("<", "\\u003c")
+
+
+def page(results):
+    """The whole page as text."""
+    rows = records.read_records(results)
+    for column in COUNTERS + MEMORY:
+        rows[column] = records.to_numbers(results / "iterations.csv", rows[column], whole=False)
+    labels = records.methods_in_order(rows)
+    missing = []
+    runs = read_runs(results, rows, missing)
+    scenes = viewer_scenes(results, rows, labels, runs, missing)
+    figure_section = figures(results, missing)
+    tables = "".join(result_tables(scene, of_scene, [label for label in labels if label in set(of_scene["method"])])
+                     for scene, of_scene in rows.groupby("scene", sort=False))
+    derived = "".join(derived_table(results / name, title, rows) for name, title in DERIVED_TABLES.items()
+                      if (results / name).is_file())
+    experiments = ", ".join(distinct(rows["experiment"]))
+    title = " / ".join(distinct(found(record, "title") for record in runs.values())) or experiments
+    colours = style.pyplot.get_cmap(strip.DIFFERENCE_COLOURS)(numpy.linspace(0, 1, 255), bytes=True)[:, :3].tolist()
+    data = inlined({"differenceColours": colours, "scenes": scenes})
+    absences = "".join(f"<li>{escape(text)}</li>" for text in missing)
+    settings_section = settings(runs)
+    sections = [("errors", "Errors and costs", True), ("derived", "Derived tables", derived),
+                ("images", "Images", scenes), ("figures", "Figures", figure_section),
+                ("settings", "Settings", settings_section)]
+    contents = " · ".join(f'<a href="#{anchor}">{name}</a>' for anchor, name, there in sections if there)
+    return f"""<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width">
+<meta http-equiv="Content-Security-Policy"
+      content="default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'">
+<title>{escape(experiments)}: {escape(title)}</title>
+<style>
+{(HERE / "report.css").read_text(encoding="utf-8")}</style>
+</head>
+<body>
+<header>
+<h1>{escape(title)}</h1>
+{facts(rows, runs)}
+{f'<div id="missing"><p>Missing from this folder:</p><ul>{absences}</ul></div>' if missing else ""}
+<nav>{contents}</nav>
+</header>
+<section id="errors">
+<h2>Errors and costs</h2>
+{scene_table(rows, runs)}
+{tables}
+<p class="small">RMSE: root of the mean over seeds of the squared error, free of the reference's noise (iterations.csv,
+<code>mse_unbiased</code>); “below resolution” where that mean is not above 0, less than the reference can tell.
+Seconds and photons: means over seeds; memory: the largest. A click on a column's name sorts by it.</p>
+</section>
+{f'<section id="derived"><h2>Derived tables</h2>{derived}</section>' if derived else ""}
+{VIEWER if scenes else ""}
+{figure_section}
+{settings_section}
+<script type="application/json" id="data">{data}</script>
+<script>
+{(HERE / "report.js").read_text(encoding="utf-8")}</script>
+</body>
+</html>
+"""
+
+
+def main(arguments):
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
+                                     formatter_class=argparse.RawDescriptionHelpFormatter,
+                                     epilog=__doc__.split("\n\n", 1)[1])
+    parser.add_argument("results", metavar="RESULTS_DIR", type=Path,
+                        help="folder of an experiment's results: iterations.csv and runs/ are in it")
+    results = parser.parse_args(arguments).results
+    try:
+        text = page(results).encode()
+        file = results / "report.html"
+        file.write_bytes(text)
+        print(f"{file} ({len(text) / 1e6:.1f} MB)")
+    except (records.RecordError, OSError) as error:
+        print(error, file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
