@@ -80,14 +80,14 @@ def table_of(scene, rows, labels):
     return table, budgets
 
 
-def brightest_corner(reference, side):
-    """Top left corner of the square of `side` pixels with the most contrast: where methods differ."""
+def place_of_inset(reference, is_light, side):
+    """Top left corner (y, x) of the square of `side` pixels with the most contrast, without a light in it."""
     luminance = numpy.log1p(reference.mean(axis=2))
     best, corner = -1.0, (0, 0)
     for y in range(0, luminance.shape[0] - side + 1, max(1, side // 4)):
         for x in range(0, luminance.shape[1] - side + 1, max(1, side // 4)):
             spread = luminance[y:y + side, x:x + side].std()
-            if spread > best:
+            if spread > best and not is_light[y:y + side, x:x + side].any():
                 best, corner = spread, (y, x)
     return corner
 
@@ -116,9 +116,11 @@ def draw_scene(results, scene, rows, labels, table, seconds):
     if reference is None or not shown:
         return None
     errors = {row["method"]: row["rmse"] for row in table if row["component"] == "total" and row["seconds"] == seconds}
-    scale = pictures.exposure_for(reference)
+    emission = pictures.read_component(results / "runs" / rows["run"].iloc[0] / record["snapshots"][0]["file"], "emission")
+    is_light = numpy.zeros(reference.shape[:2], bool) if emission is None else emission.max(axis=2) > 0
+    scale = pictures.exposure_for(reference * ~is_light[:, :, None])
     side = max(4, round(INSET * reference.shape[1]))
-    y, x = brightest_corner(reference, side)
+    y, x = place_of_inset(reference, is_light, side)
     cells = [(label, image, f"{text}\nRMSE at {seconds:g} s: {style.two_digits(errors[label]) if label in errors else '–'}")
              for label, (image, text) in shown] + [("reference", reference, "")]
     style.use()
@@ -131,7 +133,8 @@ def draw_scene(results, scene, rows, labels, table, seconds):
             axes.imshow(part, interpolation="nearest")
             axes.set(xticks=[], yticks=[])
             axes.spines[:].set_visible(True)
-        grid[0][column].add_patch(patches.Rectangle((x - 0.5, y - 0.5), side, side, fill=False, edgecolor="white", linewidth=0.8))
+        grid[0][column].add_patch(patches.Rectangle((x - 0.5, y - 0.5), side, side, fill=False, edgecolor="white",
+                                                    linewidth=0.8))
         grid[0][column].set_title(label, fontsize=9)
         grid[0][column].set_xlabel(text, fontsize=7.5)
     figure.suptitle(f"{scene}: {seconds:g} s", fontsize=9.5, x=0.01, ha="left")

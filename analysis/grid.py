@@ -107,10 +107,11 @@ def draw_differences(scene, results, rows, across, down):
             if difference is not None:
                 picture = axes.imshow(difference, cmap="RdBu_r", vmin=-scale, vmax=scale)
             if i == len(lines) - 1:
-                axes.set_xlabel(f"{records.SETTING_NAMES.get(across, across)} = {short(value)}")
+                axes.set_xlabel(short(value))
             if j == 0:
                 axes.set_ylabel(f"{short(line)}")
     figure.supylabel(records.SETTING_NAMES.get(down, down), fontsize=9)
+    figure.supxlabel(records.SETTING_NAMES.get(across, across), fontsize=9)
     figure.colorbar(picture, ax=grid, shrink=0.6, label="radiance − reference")
     figure.suptitle(f"{scene}: difference at pass {rows['pass'].max():.0f}", fontsize=9.5, x=0.01, ha="left")
     return figure

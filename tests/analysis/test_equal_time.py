@@ -5,6 +5,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import numpy
 import synthetic
 
 try:
@@ -60,6 +61,15 @@ class EqualTime(unittest.TestCase):
         code, output, errors = synthetic.run(equal_time, self.results)
         self.assertEqual((code, errors), (0, ""))
         self.assertIn("equal-time-cornell-box.png", output)
+
+    def test_insets_have_no_light_in_them(self):
+        reference = numpy.zeros((40, 40, 3))
+        reference[4:8, 4:8] = 100.0    # the light, with the most contrast
+        reference[30:, 30:] = 1.0
+        is_light = reference[:, :, 0] > 10
+        y, x = equal_time.place_of_inset(reference, is_light, 8)
+        self.assertFalse(is_light[y:y + 8, x:x + 8].any())
+        self.assertGreater(reference[y:y + 8, x:x + 8].std(), 0)
 
     def test_a_budget_outside_the_records_has_no_error(self):
         self.write()
