@@ -1,11 +1,9 @@
 #include "image/png.h"
 
-#include <OpenImageIO/imageio.h>
-
 #include <cassert>
 
-#include "core/error.h"
 #include "core/temporary_file.h"
+#include "image/image_codecs.h"
 
 namespace photonlab {
 
@@ -31,15 +29,8 @@ void write_png(const std::filesystem::path& file, int width, int height, const s
             bytes.insert(bytes.end(), {srgb_byte(shown.x), srgb_byte(shown.y), srgb_byte(shown.z)});
     }
 
-    const auto output = OIIO::ImageOutput::create("png");
-    if (!output) throw InputError(file.string(), "cannot be written: this OpenImageIO has no PNG: " + OIIO::geterror());
-    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-
     TemporaryFile temporary(file);
-    if (!output->open(temporary.path().string(), spec) || !output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) ||
-        !output->close())
-        throw InputError(file.string(), "cannot be written: " + output->geterror());
+    image_codecs().write_png(temporary.path(), file, width, height, bytes);
     temporary.rename();
 }
 

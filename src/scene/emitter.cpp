@@ -21,13 +21,13 @@ struct SurfacePoint {
 SurfacePoint sample_area(const TriangleMesh& mesh, const Shape& shape, const Imath::V2f& u, double u_triangle) {
     const auto& cdf = shape.triangle_cdf;
     const auto found = std::upper_bound(cdf.begin(), cdf.end() - 1, u_triangle);
-    const auto& triangle = mesh.triangles[static_cast<std::size_t>(found - cdf.begin())];
+    const auto index = static_cast<std::size_t>(found - cdf.begin());
+    const auto& triangle = mesh.triangles[index];
     const Vector& a = mesh.positions[triangle.x];
     const Vector& b = mesh.positions[triangle.y];
     const Vector& c = mesh.positions[triangle.z];
     const Imath::V2f weights = sample_triangle(u);
-    const VectorD normal = (VectorD(b) - VectorD(a)).cross(VectorD(c) - VectorD(a));
-    return {a * (1.0f - weights.x - weights.y) + b * weights.x + c * weights.y, Vector(normal.normalized())};
+    return {a * (1.0f - weights.x - weights.y) + b * weights.x + c * weights.y, mesh.geometric_normals[index]};
 }
 
 SurfacePoint sample_area(const Sphere& sphere, const Shape&, const Imath::V2f& u, double) {

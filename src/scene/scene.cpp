@@ -151,11 +151,12 @@ ToUnitBox make_unit_box(const Bounds& box) {
     return {centre, unit_length};
 }
 
-double triangle_area(const TriangleMesh& mesh, const Imath::Vec3<std::uint32_t>& triangle) {
+/// Normal of a triangle, twice as long as its area.
+VectorD area_vector(const TriangleMesh& mesh, const Imath::Vec3<std::uint32_t>& triangle) {
     const VectorD a(mesh.positions[triangle.x]);
     const VectorD b(mesh.positions[triangle.y]);
     const VectorD c(mesh.positions[triangle.z]);
-    return 0.5 * (b - a).cross(c - a).length();
+    return (b - a).cross(c - a);
 }
 
 Shape make_shape(const ShapeDescription& description, const ToUnitBox& to_unit_box) {
@@ -170,7 +171,9 @@ Shape make_shape(const ShapeDescription& description, const ToUnitBox& to_unit_b
             mesh.texture_coordinates.emplace_back(static_cast<float>(uv.x), static_cast<float>(uv.y));
         shape.area = 0.0;
         for (const auto& triangle : mesh.triangles) {
-            shape.area += triangle_area(mesh, triangle);
+            const VectorD normal = area_vector(mesh, triangle);
+            mesh.geometric_normals.emplace_back(normal.normalized());
+            shape.area += 0.5 * normal.length();
             if (description.radiance) shape.triangle_cdf.push_back(shape.area);
         }
         if (shape.area > 0.0)
@@ -303,9 +306,9 @@ void complete(Hit& hit, const TriangleMesh& mesh, const Ray& ray, float u, float
     const Vector& b = mesh.positions[triangle.y];
     const Vector& c = mesh.positions[triangle.z];
     hit.position = a * w + b * u + c * v;
-    const VectorD normal = (VectorD(b) - VectorD(a)).cross(VectorD(c) - VectorD(a));
+    hit.geometric_normal = mesh.geometric_normals[hit.primitive];
     // A triangle without area has no normal of its own; facing the ray is as good as any.
-    hit.geometric_normal = normal.length2() > 0.0 ? Vector(normal.normalized()) : -ray.direction;
+    if (hit.geometric_normal == Vector(0.0f)) hit.geometric_normal = -ray.direction;
     hit.shading_normal = hit.geometric_normal;
     if (!mesh.normals.empty()) {
         const VectorD interpolated = VectorD(mesh.normals[triangle.x]) * w + VectorD(mesh.normals[triangle.y]) * u +
@@ -380,29 +383,6 @@ bool is_occluded(const Scene& scene, const Vector& from, const Vector& to) {
     ray.mask = ~0u;
     trace_any(scene.embree->scene, ray);
     return ray.tfar < 0.0f;
-}
-
-std::optional<Surface> orient(const Scene& scene, const Hit& hit, const Vector& outgoing) {
-    const std::uint32_t material_index = scene.shapes[hit.shape].material;
-    const Material& material = scene.materials[material_index];
-    const float geometric = hit.geometric_normal.dot(outgoing);
-    const float shading = hit.shading_normal.dot(outgoing);
-    if (!(geometric * shading > 0.0f)) return std::nullopt;
-    const bool from_back = geometric < 0.0f;
-    if (from_back && !material.two_sided && !is_transmissive(material.bsdf)) return std::nullopt;
-    Bsdf bsdf = bsdf_at(material, hit.texture_coordinate, from_back);
-    if (is_black(bsdf)) return std::nullopt;
-    const float side = from_back ? -1.0f : 1.0f;
-    return Surface{.bsdf = std::move(bsdf),
-                   .material = material_index,
-                   .texture_coordinate = hit.texture_coordinate,
-                   .frame = make_frame(hit.shading_normal * side),
-                   .geometric_normal = hit.geometric_normal * side,
-                   .position = hit.position};
-}
-
-bool sides_agree(const Surface& surface, const Vector& direction) {
-    return surface.frame.normal.dot(direction) * surface.geometric_normal.dot(direction) > 0.0f;
 }
 
 }  // namespace photonlab

@@ -26,6 +26,7 @@ struct TriangleMesh {
     std::vector<Vector> normals;                  ///< shading normals, one a vertex, or empty
     std::vector<Imath::V2f> texture_coordinates;  ///< one a vertex, or empty
     std::vector<Imath::Vec3<std::uint32_t>> triangles;
+    std::vector<Vector> geometric_normals;  ///< unit, one a triangle; 0 for a triangle without area
 };
 
 struct Sphere {
@@ -147,9 +148,28 @@ struct Surface {
 /// Turns the hit to the side of `outgoing` (unit, away from the surface). Empty when nothing can be reflected there:
 /// the back of a one-sided opaque material, a black material, or a direction on whose side shading and geometric normal
 /// disagree.
-std::optional<Surface> orient(const Scene& scene, const Hit& hit, const Vector& outgoing);
+inline std::optional<Surface> orient(const Scene& scene, const Hit& hit, const Vector& outgoing) {
+    const std::uint32_t material_index = scene.shapes[hit.shape].material;
+    const Material& material = scene.materials[material_index];
+    const float geometric = hit.geometric_normal.dot(outgoing);
+    const float shading = hit.shading_normal.dot(outgoing);
+    if (!(geometric * shading > 0.0f)) return std::nullopt;
+    const bool from_back = geometric < 0.0f;
+    if (from_back && !material.two_sided && !is_transmissive(material.bsdf)) return std::nullopt;
+    const Bsdf bsdf = bsdf_at(material, hit.texture_coordinate, from_back);
+    if (is_black(bsdf)) return std::nullopt;
+    const float side = from_back ? -1.0f : 1.0f;
+    return Surface{.bsdf = bsdf,
+                   .material = material_index,
+                   .texture_coordinate = hit.texture_coordinate,
+                   .frame = make_frame(hit.shading_normal * side),
+                   .geometric_normal = hit.geometric_normal * side,
+                   .position = hit.position};
+}
 
 /// True when both normals see `direction` on the same side; a path must not continue in any other direction.
-bool sides_agree(const Surface& surface, const Vector& direction);
+inline bool sides_agree(const Surface& surface, const Vector& direction) {
+    return surface.frame.normal.dot(direction) * surface.geometric_normal.dot(direction) > 0.0f;
+}
 
 }  // namespace photonlab

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include "core/sampling.h"
 #include "scene/materials/bsdf.h"
 
 namespace photonlab {
@@ -12,9 +13,19 @@ struct Diffuse {
 
     Color reflectance = Color(0.5f);  ///< in [0, 1] a channel
 
-    Color evaluate(const Vector& outgoing, const Vector& incoming) const;
-    std::optional<BsdfSample> sample(const Vector& outgoing, const Imath::V2f& u) const;
-    float density(const Vector& outgoing, const Vector& incoming) const;
+    Color evaluate(const Vector& outgoing, const Vector& incoming) const {
+        if (outgoing.z <= 0.0f || incoming.z <= 0.0f) return Color(0.0f);
+        return reflectance * static_cast<float>(1.0 / pi);
+    }
+    std::optional<BsdfSample> sample(const Vector& outgoing, const Imath::V2f& u) const {
+        if (outgoing.z <= 0.0f) return std::nullopt;
+        const Vector incoming = sample_cosine_hemisphere(u);
+        if (incoming.z <= 0.0f) return std::nullopt;
+        return BsdfSample{incoming, reflectance, cosine_hemisphere_density(incoming.z)};
+    }
+    float density(const Vector& outgoing, const Vector& incoming) const {
+        return outgoing.z > 0.0f ? cosine_hemisphere_density(incoming.z) : 0.0f;
+    }
 };
 
 }  // namespace photonlab

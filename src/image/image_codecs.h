@@ -1,0 +1,33 @@
+// Image files by OpenImageIO, in a shared library of its own that is loaded when the first such file is read or
+// written: OpenImageIO brings some 250 libraries, whose start takes longer than a small render.
+
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace photonlab {
+
+/// An image as its file has it, row by row from the top.
+struct DecodedImage {
+    int width = 0;
+    int height = 0;
+    int channels = 0;
+    bool is_floating_point = false;  ///< in the file; integers are scaled to [0, 1]
+    std::vector<float> values;       ///< width * height * channels
+};
+
+struct ImageCodecs {
+    /// Reads an image of 1 to 32768 pixels a side. Throws InputError.
+    DecodedImage (*read)(const std::filesystem::path& file);
+
+    /// Writes 8-bit sRGB to `temporary`; `file` is its name in messages. Throws InputError.
+    void (*write_png)(const std::filesystem::path& temporary, const std::filesystem::path& file, int width, int height,
+                      const std::vector<std::uint8_t>& bytes);
+};
+
+/// The codecs, loaded by the first call. Throws InputError when their library is missing.
+const ImageCodecs& image_codecs();
+
+}  // namespace photonlab
