@@ -9,6 +9,7 @@
 #include <Imath/ImathVec.h>
 #include <Random123/philox.h>
 
+#include <array>
 #include <cstdint>
 
 namespace photonlab {
@@ -37,12 +38,8 @@ public:
                     static_cast<std::uint32_t>(index >> 32) | static_cast<std::uint32_t>(purpose) << 24}} {}
 
     std::uint32_t next_bits() {
-        if (used_ == 4) {
-            block_ = r123::Philox4x32()(counter_, key_);
-            ++counter_[0];
-            used_ = 0;
-        }
-        return block_[used_++];
+        if (used_ == numbers_.size()) refill();
+        return numbers_[used_++];
     }
 
     /// Uniform in [0, 1), a multiple of 2^-24.
@@ -61,10 +58,24 @@ public:
     }
 
 private:
+    /// Two blocks at a time: a round waits for the one before it, and the other block's fits in between.
+    void refill() {
+        auto next_counter = counter_;
+        ++next_counter[0];
+        const auto first = r123::Philox4x32()(counter_, key_);
+        const auto second = r123::Philox4x32()(next_counter, key_);
+        for (std::size_t i = 0; i < 4; ++i) {
+            numbers_[i] = first[i];
+            numbers_[i + 4] = second[i];
+        }
+        counter_[0] += 2;
+        used_ = 0;
+    }
+
     r123::Philox4x32::key_type key_;
     r123::Philox4x32::ctr_type counter_;
-    r123::Philox4x32::ctr_type block_{};
-    unsigned used_ = 4;
+    std::array<std::uint32_t, 8> numbers_;
+    std::size_t used_ = 8;
 };
 
 }  // namespace photonlab

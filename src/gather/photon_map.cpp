@@ -13,23 +13,20 @@ namespace {
 
 constexpr int leaf_max_size = 32;
 
-struct SortKey {
-    std::uint64_t morton;
-    std::uint32_t index;
-};
+/// A Morton number in the upper half, the photon's place in the lower.
+using SortKey = std::uint64_t;
+constexpr unsigned bits_per_axis = 10;
 
-/// Spreads the low 21 bits of `x` so that two zero bits follow each.
+/// Spreads the low 10 bits of `x` so that two zero bits follow each.
 std::uint64_t spread_bits(std::uint64_t x) {
-    x &= 0x1fffff;
-    x = (x | x << 32) & 0x1f00000000ffff;
-    x = (x | x << 16) & 0x1f0000ff0000ff;
-    x = (x | x << 8) & 0x100f00f00f00f00f;
-    x = (x | x << 4) & 0x10c30c30c30c30c3;
-    x = (x | x << 2) & 0x1249249249249249;
+    x = (x | x << 16) & 0x30000ff;
+    x = (x | x << 8) & 0x300f00f;
+    x = (x | x << 4) & 0x30c30c3;
+    x = (x | x << 2) & 0x9249249;
     return x;
 }
 
-/// Keys along a Morton curve over the photons' bounding box, 21 bits an axis.
+/// Keys along a Morton curve over the photons' bounding box.
 std::vector<SortKey> morton_keys(const std::vector<Photon>& photons) {
     Vector lower(infinity);
     Vector upper(-infinity);
@@ -38,7 +35,7 @@ std::vector<SortKey> morton_keys(const std::vector<Photon>& photons) {
             lower[axis] = std::min(lower[axis], photon.position[axis]);
             upper[axis] = std::max(upper[axis], photon.position[axis]);
         }
-    constexpr double cells = 2097151.0;  // 2^21 - 1
+    constexpr double cells = (1u << bits_per_axis) - 1.0;
     std::array<double, 3> scale{};
     for (int axis = 0; axis < 3; ++axis) {
         const double extent = static_cast<double>(upper[axis]) - lower[axis];
@@ -51,29 +48,44 @@ std::vector<SortKey> morton_keys(const std::vector<Photon>& photons) {
             const double offset = static_cast<double>(position[axis]) - lower[axis];
             return static_cast<std::uint64_t>(offset * scale[static_cast<std::size_t>(axis)]);
         };
-        keys[i] = {spread_bits(cell(0)) | spread_bits(cell(1)) << 1 | spread_bits(cell(2)) << 2,
-                   static_cast<std::uint32_t>(i)};
+        keys[i] = (spread_bits(cell(0)) | spread_bits(cell(1)) << 1 | spread_bits(cell(2)) << 2) << 32 | i;
     }
     return keys;
 }
 
-/// Stable least-significant-digit radix sort by Morton key; digits that all keys share are skipped.
+/// Stable least-significant-digit radix sort by Morton number.
 void radix_sort(std::vector<SortKey>& keys) {
-    constexpr unsigned digit_bits = 11;
+    constexpr unsigned digit_bits = bits_per_axis;
     constexpr std::size_t buckets = std::size_t{1} << digit_bits;
     std::vector<SortKey> other(keys.size());
-    for (unsigned shift = 0; shift < 63; shift += digit_bits) {
+    for (unsigned shift = 32; shift < 32 + 3 * bits_per_axis; shift += digit_bits) {
         std::array<std::size_t, buckets> starts{};
-        for (const SortKey& key : keys) ++starts[key.morton >> shift & (buckets - 1)];
-        if (std::find(starts.begin(), starts.end(), keys.size()) != starts.end()) continue;
+        for (const SortKey key : keys) ++starts[key >> shift & (buckets - 1)];
         std::size_t next = 0;
         for (std::size_t& start : starts) {
             const std::size_t count = start;
             start = next;
             next += count;
         }
-        for (const SortKey& key : keys) other[starts[key.morton >> shift & (buckets - 1)]++] = key;
+        for (const SortKey key : keys) other[starts[key >> shift & (buckets - 1)]++] = key;
         keys.swap(other);
+    }
+}
+
+/// Puts the photons into the order of the keys, in place: a second copy of them would be the peak of memory.
+void permute(std::vector<Photon>& photons, std::vector<SortKey>& keys) {
+    const auto source = [&](std::size_t place) { return static_cast<std::size_t>(keys[place] & 0xffffffffu); };
+    for (std::size_t start = 0; start < photons.size(); ++start) {
+        const Photon first = photons[start];
+        std::size_t place = start;
+        while (source(place) != start) {
+            const std::size_t from = source(place);
+            photons[place] = photons[from];
+            keys[place] = place;
+            place = from;
+        }
+        photons[place] = first;
+        keys[place] = place;
     }
 }
 
@@ -155,27 +167,23 @@ PhotonMap::PhotonMap(std::vector<Photon> photons) {
                          std::to_string(photons.size()));
 
     const std::uint64_t count = photons.size();
-    const std::uint64_t given_bytes = photons.capacity() * sizeof(Photon);
-    const std::uint64_t photon_bytes = count * sizeof(Photon);
-    std::vector<SortKey> keys = morton_keys(photons);
-    radix_sort(keys);
-    photons_.reserve(photons.size());
-    for (const SortKey& key : keys) photons_.push_back(photons[key.index]);
-    photons = {};
-    keys = {};
+    const std::uint64_t photon_bytes = photons.capacity() * sizeof(Photon);
+    {
+        std::vector<SortKey> keys = morton_keys(photons);
+        radix_sort(keys);
+        permute(photons, keys);
+    }
+    photons_ = std::move(photons);
 
     const flann::Matrix<float> positions(&photons_[0].position.x, photons_.size(), 3, sizeof(Photon));
     index_ = std::make_unique<Index>(positions, flann::KDTreeSingleIndexParams(leaf_max_size, true));
     index_->buildIndex();
 
-    // Three moments compete for the peak: sorting the keys (with the sort's second buffer), copying the photons into
-    // their order, and holding photons and index. FLANN reports its nodes and permutation, in an int that wraps at 2
-    // GB, and not its pointer to each point nor its reordered copy of the positions.
-    const std::uint64_t while_sorting = given_bytes + 2 * count * sizeof(SortKey);
-    const std::uint64_t while_copying = given_bytes + count * sizeof(SortKey) + photon_bytes;
+    // FLANN reports its nodes and permutation, in an int that wraps at 2 GB, and not its pointer to each point nor its
+    // reordered copy of the positions.
     const std::uint64_t index_bytes =
         static_cast<std::uint32_t>(index_->usedMemory()) + count * (sizeof(float*) + 3 * sizeof(float));
-    bytes_ = std::max({while_sorting, while_copying, photon_bytes + index_bytes});
+    bytes_ = photon_bytes + std::max(2 * count * sizeof(SortKey), index_bytes);
 }
 
 void PhotonMap::search(flann::ResultSet<float>& result, const Vector& position) const {

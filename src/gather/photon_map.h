@@ -18,6 +18,8 @@
 #include <flann/algorithms/kdtree_single_index.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -29,10 +31,33 @@
 
 namespace photonlab {
 
-/// True when a photon counts at a surface point with this normal (unit, facing the viewer).
+/// What of a photon decides whether it counts at a surface point.
+struct PhotonSide {
+    Vector incoming;  ///< length between 0.5 and 1
+    Vector normal;    ///< likewise
+    float least;      ///< 60 degrees: half the length of `normal`
+
+    explicit PhotonSide(const Photon& photon)
+        : incoming(photon.incoming.unnormalized()),
+          normal(photon.normal.unnormalized()),
+          least(0.5f * std::sqrt(normal.length2())) {}
+
+    /// `surface_normal` is unit and faces the viewer.
+    bool is_accepted_at(const Vector& surface_normal) const {
+        return incoming.dot(surface_normal) > 0.0f && normal.dot(surface_normal) > least;
+    }
+};
+
 inline bool is_accepted(const Photon& photon, const Vector& normal) {
-    return photon.incoming.dot(normal) > 0.0f && photon.normal.dot(normal) > 0.5f;
+    return PhotonSide(photon).is_accepted_at(normal);
 }
+
+/// A surface point that asks for photons.
+struct GatherQuery {
+    Vector position;
+    Vector normal;  ///< unit, facing the viewer
+    double radius;  ///< unit box
+};
 
 /// Answer of PhotonMap::nearest().
 struct NearestPhotons {
@@ -64,6 +89,12 @@ public:
     /// that.
     template <typename Visit>
     void within(const Vector& position, const Vector& normal, double radius, const Visit& visit) const;
+
+    /// within() for many queries: `visit(std::size_t query, const Photon&, double squared_distance)`. Queries that follow
+    /// each other and lie together are answered by one search, so a coherent order is worth twice the speed; which
+    /// photons are found does not depend on it.
+    template <typename Visit>
+    void within_each(const std::vector<GatherQuery>& queries, const Visit& visit) const;
 
     /// Finds the k nearest accepted photons within `max_radius`, then calls `visit(const Photon&, double
     /// squared_distance, double squared_radius)`, nearest first, for those that carry flux: all of them when fewer than
@@ -110,41 +141,126 @@ inline float pruning_bound(double squared_radius) {
     return static_cast<float>(std::min(floored * (1.0 + 1e-5), static_cast<double>(std::numeric_limits<float>::max())));
 }
 
+/// Queries that one search answers: at most 16, within a ball not much larger than those that they ask for.
+class QueryCluster {
+public:
+    static constexpr std::size_t capacity = 16;
+
+    /// The longest cluster from query `first` on.
+    QueryCluster(const std::vector<GatherQuery>& queries, std::size_t first) : first_(first) {
+        Vector lower = queries[first].position;
+        Vector upper = lower;
+        double smallest = queries[first].radius;
+        double largest = smallest;
+        for (std::size_t i = first; i < queries.size() && count_ < capacity; ++i) {
+            const GatherQuery& query = queries[i];
+            for (int axis = 0; axis < 3; ++axis) {
+                lower[axis] = std::min(lower[axis], query.position[axis]);
+                upper[axis] = std::max(upper[axis], query.position[axis]);
+            }
+            smallest = std::min(smallest, query.radius);
+            largest = std::max(largest, query.radius);
+            const bool is_compact = (upper - lower).length2() <= 16.0 * largest * largest && largest <= 2.0 * smallest;
+            if (count_ > 0 && !is_compact) break;
+            x_[count_] = query.position.x;
+            y_[count_] = query.position.y;
+            z_[count_] = query.position.z;
+            const double radius = std::max(query.radius, PhotonMap::minimum_radius);
+            squared_radius_[count_] = radius * radius;
+            ++count_;
+            centre_ = (lower + upper) * 0.5f;
+        }
+        for (std::size_t i = count_; i < capacity; ++i) {
+            x_[i] = y_[i] = z_[i] = 0.0;
+            squared_radius_[i] = -1.0;
+        }
+        for (std::size_t i = 0; i < count_; ++i) {
+            const double distance = (VectorD(x_[i], y_[i], z_[i]) - VectorD(centre_)).length();
+            reach_ = std::max(reach_, distance + std::sqrt(squared_radius_[i]));
+        }
+    }
+
+    std::size_t first() const { return first_; }
+    std::size_t end() const { return first_ + count_; }
+    const Vector& centre() const { return centre_; }
+    double reach() const { return reach_; }  ///< from the centre, of the ball that holds all of theirs
+
+    /// A bit for each query whose ball holds the position, the first query's lowest; fills their squared distances.
+    unsigned holding(const Vector& position, std::array<double, capacity>& squared_distance) const {
+        // Straight-line code over all slots, so that the compiler does several at once.
+        unsigned inside = 0;
+        for (std::size_t i = 0; i < capacity; ++i) {
+            const double x = x_[i] - position.x;
+            const double y = y_[i] - position.y;
+            const double z = z_[i] - position.z;
+            squared_distance[i] = x * x + y * y + z * z;
+        }
+        for (std::size_t i = 0; i < capacity; ++i)
+            inside |= static_cast<unsigned>(squared_distance[i] <= squared_radius_[i]) << i;
+        return inside;
+    }
+
+private:
+    std::size_t first_;
+    std::size_t count_ = 0;
+    std::array<double, capacity> x_;
+    std::array<double, capacity> y_;
+    std::array<double, capacity> z_;
+    std::array<double, capacity> squared_radius_;  // negative in a slot without query
+    Vector centre_;
+    double reach_ = 0.0;
+};
+
 /// What FLANN's search calls for each point below the bound; sums happen inside `visit`, nothing is stored.
 template <typename Visit>
-class RadiusVisitor : public flann::ResultSet<float> {
+class ClusterVisitor : public flann::ResultSet<float> {
 public:
-    RadiusVisitor(const std::vector<Photon>& photons, const Vector& position, const Vector& normal,
-                  double squared_radius, const Visit& visit)
+    ClusterVisitor(const std::vector<Photon>& photons, const std::vector<GatherQuery>& queries,
+                   const QueryCluster& cluster, const Visit& visit)
         : photons_(photons),
-          position_(position),
-          normal_(normal),
-          squared_radius_(squared_radius),
-          bound_(pruning_bound(squared_radius)),
+          queries_(queries),
+          cluster_(cluster),
+          bound_(pruning_bound(cluster.reach() * cluster.reach())),
           visit_(visit) {}
 
     bool full() const override { return true; }
     float worstDist() const override { return bound_; }
     void addPoint(float, std::size_t index) override {
         const Photon& photon = photons_[index];
-        const double squared_distance = squared_distance_between(photon.position, position_);
-        if (squared_distance <= squared_radius_ && is_accepted(photon, normal_)) visit_(photon, squared_distance);
+        std::array<double, QueryCluster::capacity> squared_distance;
+        unsigned inside = cluster_.holding(photon.position, squared_distance);
+        if (inside == 0) return;
+        const PhotonSide side(photon);
+        for (; inside != 0; inside &= inside - 1) {
+            const auto slot = static_cast<std::size_t>(std::countr_zero(inside));
+            const std::size_t query = cluster_.first() + slot;
+            if (side.is_accepted_at(queries_[query].normal)) visit_(query, photon, squared_distance[slot]);
+        }
     }
 
 private:
     const std::vector<Photon>& photons_;
-    const Vector position_;
-    const Vector normal_;
-    const double squared_radius_;
+    const std::vector<GatherQuery>& queries_;
+    const QueryCluster& cluster_;
     const float bound_;
     const Visit& visit_;
 };
 
 template <typename Visit>
+void PhotonMap::within_each(const std::vector<GatherQuery>& queries, const Visit& visit) const {
+    for (std::size_t first = 0; first < queries.size();) {
+        const QueryCluster cluster(queries, first);
+        ClusterVisitor<Visit> visitor(photons_, queries, cluster, visit);
+        search(visitor, cluster.centre());
+        first = cluster.end();
+    }
+}
+
+template <typename Visit>
 void PhotonMap::within(const Vector& position, const Vector& normal, double radius, const Visit& visit) const {
-    const double floored = std::max(radius, minimum_radius);
-    RadiusVisitor<Visit> visitor(photons_, position, normal, floored * floored, visit);
-    search(visitor, position);
+    within_each({{position, normal, radius}}, [&](std::size_t, const Photon& photon, double squared_distance) {
+        visit(photon, squared_distance);
+    });
 }
 
 template <typename Visit>

@@ -6,8 +6,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <vector>
 
 #include "core/math.h"
+#include "core/parallel.h"
 #include "gather/kernel.h"
 #include "gather/photon_map.h"
 #include "integrators/integrator.h"
@@ -20,40 +23,65 @@ namespace photonlab {
 class FluxSum {
 public:
     FluxSum(const Scene& scene, const HitPoint& point, int max_depth)
-        : point_(point),
-          surface_(surface_at(scene, point)),
-          outgoing_(surface_.frame.to_local(point.outgoing)),
-          max_depth_(max_depth) {}
-
-    /// Takes a photon with its kernel weight. A photon whose path would be deeper than max_depth is not counted.
-    void add(const Photon& photon, double weight) {
-        if (!depth_allows(max_depth_, photon.edges + point_.camera_edges)) return;
-        ++count_;
-        const Color f = evaluate(surface_.bsdf, outgoing_, surface_.frame.to_local(photon.incoming));
-        flux_ += ColorD(f * photon.power) * weight;
+        : camera_edges_(point.camera_edges), max_depth_(max_depth) {
+        const Bsdf bsdf = bsdf_at(scene.materials[point.material], point.texture_coordinate, false);
+        if (const auto* diffuse = std::get_if<Diffuse>(&bsdf))
+            lambertian_ = diffuse->reflectance * static_cast<float>(1.0 / pi);
+        else
+            glossy_.emplace(Glossy{bsdf, make_frame(point.normal), make_frame(point.normal).to_local(point.outgoing)});
     }
 
-    ColorD flux() const { return flux_; }  ///< relative to Scene::total_power, per steradian
+    /// Takes a photon that was accepted at the point, with its kernel weight. A photon whose path would be deeper than
+    /// max_depth is not counted.
+    void add(const Photon& photon, double weight) {
+        if (!depth_allows(max_depth_, photon.edges + std::uint32_t{camera_edges_})) return;
+        ++count_;
+        if (glossy_) {
+            const Vector incoming = glossy_->frame.to_local(photon.incoming.unit());
+            sum_ += ColorD(evaluate(glossy_->bsdf, glossy_->outgoing, incoming) * photon.power) * weight;
+        } else {
+            sum_ += ColorD(photon.power) * weight;
+        }
+    }
+
+    /// Relative to Scene::total_power, per steradian.
+    ColorD flux() const { return glossy_ ? sum_ : sum_ * ColorD(lambertian_); }
     std::uint64_t count() const { return count_; }
 
 private:
-    const HitPoint& point_;
-    const Surface surface_;
-    const Vector outgoing_;
-    const int max_depth_;
-    ColorD flux_ = ColorD(0.0);
+    struct Glossy {
+        Bsdf bsdf;
+        Frame frame;
+        Vector outgoing;  // local
+    };
+
+    ColorD sum_ = ColorD(0.0);  // of flux times BRDF; of flux alone where the BRDF is a constant
     std::uint64_t count_ = 0;
+    Color lambertian_ = Color(0.0f);  // that constant
+    std::uint16_t camera_edges_;
+    int max_depth_;
+    std::optional<Glossy> glossy_;
 };
 
-/// Everything within `radius` (unit box), weighted by the kernel.
-inline FluxSum gather_within(const PhotonMap& map, const Scene& scene, const HitPoint& point, double radius,
-                             Kernel kernel, int max_depth) {
-    FluxSum sum(scene, point, max_depth);
-    const double inverse_squared_radius = 1.0 / (radius * radius);
-    map.within(point.position, point.normal, radius, [&](const Photon& photon, double squared_distance) {
-        sum.add(photon, kernel_weight(kernel, std::min(1.0, squared_distance * inverse_squared_radius)));
+/// Everything within each hit point's own radius, weighted by the kernel: the sums of hit points [range.begin,
+/// range.end), in order. `radius_of(index)` is in the unit box.
+template <typename RadiusOf>
+std::vector<FluxSum> gather_within(const PhotonMap& map, const Scene& scene, const HitPoints& hit_points,
+                                   BlockRange range, Kernel kernel, int max_depth, const RadiusOf& radius_of) {
+    std::vector<GatherQuery> queries;
+    std::vector<FluxSum> sums;
+    queries.reserve(range.end - range.begin);
+    sums.reserve(range.end - range.begin);
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+        const HitPoint& point = hit_points.points[i];
+        queries.push_back({point.position, point.normal, radius_of(i)});
+        sums.emplace_back(scene, point, max_depth);
+    }
+    map.within_each(queries, [&](std::size_t i, const Photon& photon, double squared_distance) {
+        const double squared_radius = queries[i].radius * queries[i].radius;
+        sums[i].add(photon, kernel_weight(kernel, std::min(1.0, squared_distance / squared_radius)));
     });
-    return sum;
+    return sums;
 }
 
 /// Initial gather radius of a hit point, unit box: the setting (scene units), or three times the pixel's footprint.

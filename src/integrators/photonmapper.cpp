@@ -95,13 +95,14 @@ private:
         std::vector<std::uint64_t> gathered(blocks, 0);
         parallel_for(blocks, context_.threads, [&](std::size_t block) {
             const BlockRange range = block_range(block, points.size(), hit_points_per_block);
+            const std::vector<FluxSum> sums = settings_.mode == GatherMode::Radius
+                                                  ? gather_within(map, context_.scene, context_.hit_points, range,
+                                                                  settings_.kernel, settings_.max_depth,
+                                                                  [&](std::size_t i) { return search.radii[i]; })
+                                                  : gather_nearest(map, search, range);
             for (std::size_t i = range.begin; i < range.end; ++i) {
-                double& radius = search.radii[i];
-                const FluxSum sum =
-                    settings_.mode == GatherMode::Radius
-                        ? gather_within(map, context_.scene, points[i], radius, settings_.kernel, settings_.max_depth)
-                        : gather_nearest(map, points[i], search, radius);
-                radiance_[i] += sum.flux() / (pi * radius * radius);
+                const FluxSum& sum = sums[i - range.begin];
+                radiance_[i] += sum.flux() / (pi * search.radii[i] * search.radii[i]);
                 search.counts[i] = static_cast<std::uint32_t>(sum.count());
                 gathered[block] += sum.count();
             }
@@ -109,16 +110,20 @@ private:
         for (const std::uint64_t count : gathered) report_.photons_gathered += count;
     }
 
-    /// The k nearest; `radius` becomes that of the disc to divide by.
-    FluxSum gather_nearest(const PhotonMap& map, const HitPoint& point, const Search& search, double& radius) const {
-        FluxSum sum(context_.scene, point, settings_.max_depth);
-        const NearestPhotons nearest = map.nearest(
-            point.position, point.normal, search.k, search.max_radius,
-            [&](const Photon& photon, double squared_distance, double squared_radius) {
-                sum.add(photon, kernel_weight(settings_.kernel, std::min(1.0, squared_distance / squared_radius)));
-            });
-        radius = std::sqrt(nearest.squared_radius);
-        return sum;
+    /// The k nearest of each hit point; search.radii become those of the discs to divide by.
+    std::vector<FluxSum> gather_nearest(const PhotonMap& map, Search& search, BlockRange range) const {
+        std::vector<FluxSum> sums;
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            const HitPoint& point = context_.hit_points.points[i];
+            FluxSum& sum = sums.emplace_back(context_.scene, point, settings_.max_depth);
+            const NearestPhotons nearest = map.nearest(
+                point.position, point.normal, search.k, search.max_radius,
+                [&](const Photon& photon, double squared_distance, double squared_radius) {
+                    sum.add(photon, kernel_weight(settings_.kernel, std::min(1.0, squared_distance / squared_radius)));
+                });
+            search.radii[i] = std::sqrt(nearest.squared_radius);
+        }
+        return sums;
     }
 
     const MethodSettings settings_;

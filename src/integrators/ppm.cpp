@@ -39,9 +39,14 @@ public:
         std::vector<std::uint64_t> gathered(blocks, 0);
         parallel_for(blocks, context_.threads, [&](std::size_t block) {
             const BlockRange range = block_range(block, statistics_.size(), hit_points_per_block);
-            for (std::size_t i = range.begin; i < range.end; ++i)
-                gathered[block] +=
-                    update(context_.hit_points.points[i], map, photons.paths_of_pass(), pass, statistics_[i]);
+            const std::vector<FluxSum> sums =
+                gather_within(map, context_.scene, context_.hit_points, range, settings_.kernel, settings_.max_depth,
+                              [&](std::size_t i) { return std::sqrt(statistics_[i].squared_radius); });
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                const FluxSum& sum = sums[i - range.begin];
+                update(statistics_[i], sum, photons.paths_of_pass(), pass);
+                gathered[block] += sum.count();
+            }
         });
         for (const std::uint64_t count : gathered) report_.photons_gathered += count;
 
@@ -90,11 +95,8 @@ private:
             statistics.squared_radius = std::max(statistics.squared_radius * shrink, smallest_squared_radius);
     }
 
-    /// One pass at one hit point; returns the number of photons found.
-    std::uint64_t update(const HitPoint& point, const PhotonMap& map, std::uint64_t paths, std::uint64_t pass,
-                         GatherStatistics& statistics) const {
-        const FluxSum sum = gather_within(map, context_.scene, point, std::sqrt(statistics.squared_radius),
-                                          settings_.kernel, settings_.max_depth);
+    /// One pass at one hit point.
+    void update(GatherStatistics& statistics, const FluxSum& sum, std::uint64_t paths, std::uint64_t pass) const {
         const double area = pi * statistics.squared_radius;
         const ColorD estimate = sum.flux() / (area * static_cast<double>(paths));
         statistics.estimate += (estimate - statistics.estimate) / static_cast<double>(passes_);
@@ -108,7 +110,6 @@ private:
             statistics.count += found;
         }
         statistics.squared_radius = std::max(statistics.squared_radius, smallest_squared_radius);
-        return sum.count();
     }
 
     const MethodSettings settings_;

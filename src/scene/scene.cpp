@@ -356,15 +356,16 @@ std::optional<Hit> intersect(const Scene& scene, const Ray& ray) {
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     trace_closest(scene.embree->scene, query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    std::optional<Hit> found;
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return found;
 
-    Hit hit{};
+    Hit& hit = found.emplace();
     hit.distance = query.ray.tfar;
     hit.shape = query.hit.geomID;
     hit.primitive = query.hit.primID;
     std::visit([&](const auto& geometry) { complete(hit, geometry, ray, query.hit.u, query.hit.v); },
                scene.shapes[hit.shape].geometry);
-    return hit;
+    return found;
 }
 
 bool is_occluded(const Scene& scene, const Vector& from, const Vector& to) {

@@ -28,6 +28,11 @@ struct Branch {
     std::uint32_t edges;
 };
 
+/// Bits 0, 2, 4 and 6 of a Morton number, side by side: its column in a tile; of half of it: its row.
+int every_second_bit(int morton) {
+    return (morton & 1) | (morton >> 1 & 2) | (morton >> 2 & 4) | (morton >> 3 & 8);
+}
+
 /// Square root of a perfect square; InputError for anything else.
 int grid_size(int samples_per_pixel) {
     const int size = static_cast<int>(std::lround(std::sqrt(std::max(0, samples_per_pixel))));
@@ -115,11 +120,13 @@ HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int thread
     parallel_for(tiles.size(), threads, [&](std::size_t index) {
         const int left = static_cast<int>(index) % tiles_across * tile_size;
         const int top = static_cast<int>(index) / tiles_across * tile_size;
-        for (int y = top; y < std::min(top + tile_size, camera.height); ++y)
-            for (int x = left; x < std::min(left + tile_size, camera.width); ++x)
-                for (int sample = 0; sample < samples_per_pixel; ++sample)
-                    trace_sample(x, y, x + (sample % grid + 0.5) / grid, y + (sample / grid + 0.5) / grid,
-                                 tiles[index]);
+        for (int place = 0; place < tile_size * tile_size; ++place) {
+            const int x = left + every_second_bit(place);
+            const int y = top + every_second_bit(place >> 1);
+            if (x >= camera.width || y >= camera.height) continue;
+            for (int sample = 0; sample < samples_per_pixel; ++sample)
+                trace_sample(x, y, x + (sample % grid + 0.5) / grid, y + (sample / grid + 0.5) / grid, tiles[index]);
+        }
     });
 
     for (const Tile& tile : tiles) {

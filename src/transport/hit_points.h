@@ -42,7 +42,8 @@ struct HitPoints {
     int width = 0;
     int height = 0;
     int samples_per_pixel = 1;
-    std::vector<HitPoint> points;  ///< tile by tile, so that neighbours in the list are neighbours in space
+    std::vector<HitPoint> points;  ///< tile by tile and along a Morton curve in each, so that neighbours in the list are
+                                   ///< neighbours in space
     std::vector<float>
         footprints;  ///< one a point, unit box: unfolded distance from the camera times the pixel's angle
     std::vector<SeenEmission> emission;

@@ -17,6 +17,7 @@ constexpr float highest_survival = 0.99f;   // so that a path among white surfac
 float adjoint_correction(const Surface& surface, const Vector& arriving, const Vector& leaving) {
     const Vector& shading = surface.frame.normal;
     const Vector& geometric = surface.geometric_normal;
+    if (shading == geometric) return 1.0f;
     return std::abs(arriving.dot(shading) * leaving.dot(geometric)) /
            std::abs(arriving.dot(geometric) * leaving.dot(shading));
 }
@@ -46,15 +47,16 @@ void trace_path(const Scene& scene, const PhotonSettings& settings, std::uint64_
         const bool specular = is_specular(surface->bsdf);
         if (!specular && (edges > 1 || settings.store_direct)) {
             const Vector& normal = surface->frame.normal;
-            const float slant = std::abs(arriving.dot(normal) / arriving.dot(surface->geometric_normal));
-            const Photon photon{.position = surface->position,
-                                .incoming = arriving,
-                                .normal = normal,
-                                .power = power * slant,
-                                .edges = edges & 0x7fffffffu,
-                                .caustic = only_specular && edges > 1};
-            if (is_finite(photon.position) && is_finite(photon.incoming) && is_finite(photon.power))
-                result.photons.push_back(photon);
+            const Vector& geometric = surface->geometric_normal;
+            const Color carried =
+                normal == geometric ? power : power * std::abs(arriving.dot(normal) / arriving.dot(geometric));
+            if (is_finite(surface->position) && is_finite(arriving) && is_finite(carried))
+                result.photons.push_back({.position = surface->position,
+                                          .power = carried,
+                                          .incoming = PackedDirection(arriving),
+                                          .normal = CoarseDirection(normal),
+                                          .edges = static_cast<std::uint16_t>(edges & 0x7fffu),
+                                          .caustic = only_specular && edges > 1});
             else
                 ++result.nonfinite;
         }
@@ -88,15 +90,19 @@ PhotonPass trace_photons(const Scene& scene, const PhotonSettings& settings, std
     std::vector<PhotonPass> blocks(block_count(settings.paths, block_size));
     parallel_for(blocks.size(), threads, [&](std::size_t block) {
         const BlockRange range = block_range(block, settings.paths, block_size);
+        std::vector<Photon>& photons = blocks[block].photons;
+        photons.reserve(range.end - range.begin);
         for (std::size_t index = range.begin; index < range.end; ++index)
             trace_path(scene, settings, pass, index, blocks[block]);
+        photons.shrink_to_fit();
     });
 
     std::size_t stored = 0;
     for (const PhotonPass& block : blocks) stored += block.photons.size();
     result.photons.reserve(stored);
-    for (const PhotonPass& block : blocks) {
+    for (PhotonPass& block : blocks) {
         result.photons.insert(result.photons.end(), block.photons.begin(), block.photons.end());
+        block.photons = {};
         result.paths_cut += block.paths_cut;
         result.power_cut += block.power_cut;
         result.nonfinite += block.nonfinite;

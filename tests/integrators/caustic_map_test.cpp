@@ -69,7 +69,9 @@ TEST_F(CausticMap, IsSearchedWithItsOwnRadius) {
     const PhotonMap caustic(caustic_);
     const auto within = [&](const PhotonMap& map, const HitPoint& point, double radius) {
         const double r = radius / scene_.unit_length;
-        return gather_within(map, scene_, point, r, Kernel::Disc, -1).flux() / (pi * r * r);
+        FluxSum sum(scene_, point, -1);
+        map.within(point.position, point.normal, r, [&](const Photon& photon, double) { sum.add(photon, 1.0); });
+        return sum.flux() / (pi * r * r);
     };
     expect_layer(gathered({.radius = global_radius, .caustic_radius = caustic_radius}), [&](const HitPoint& point) {
         return within(global, point, global_radius) + within(caustic, point, caustic_radius);

@@ -27,6 +27,11 @@ MethodSettings progressive(ScheduleName schedule, double alpha) {
             .photons_per_pass = 60};
 }
 
+FluxSum gather_at_first(const Scene& scene, const HitPoints& hit_points, const PhotonPass& pass, double radius) {
+    return gather_within(PhotonMap(pass.photons), scene, hit_points, {0, 1}, Kernel::Disc, -1,
+                         [&](std::size_t) { return radius; })[0];
+}
+
 // Hachisuka, Ogaki & Jensen 2008: tau <- (tau + phi) rho, R^2 <- R^2 rho, L = tau / (pi R^2 N_emitted). A pass may be
 // empty.
 TEST(ProgressivePhotonMapping, IsTheShrinkingFluxOfItsPaper) {
@@ -44,8 +49,7 @@ TEST(ProgressivePhotonMapping, IsTheShrinkingFluxOfItsPaper) {
         for (std::uint64_t pass = 1; pass <= 200; ++pass) {
             EXPECT_NEAR(*run.integrator->report().radius_mean, std::sqrt(squared_radius) * scene.unit_length, 1e-9);
             const PhotonPass photons = trace_photons(scene, photon_settings(method, 1), pass, 1);
-            const FluxSum found = gather_within(PhotonMap(photons.photons), scene, hit_points.points[0],
-                                                std::sqrt(squared_radius), Kernel::Disc, -1);
+            const FluxSum found = gather_at_first(scene, hit_points, photons, std::sqrt(squared_radius));
             paths += photons.paths_emitted;
             empty_passes += found.count() == 0;
             if (found.count() > 0 || count > 0.0) {
@@ -147,8 +151,7 @@ TEST(PhotonMapping, CountsThePhotonsThatItGathered) {
     std::uint64_t expected = 0;
     for (std::uint64_t pass = 1; pass <= 4; ++pass) {
         const PhotonPass photons = trace_photons(scene, {.paths = 2000, .store_direct = true}, pass, 1);
-        expected +=
-            gather_within(PhotonMap(photons.photons), scene, hit_points.points[0], radius, Kernel::Disc, -1).count();
+        expected += gather_at_first(scene, hit_points, photons, radius).count();
     }
     ASSERT_GT(expected, 100u);
     for (const char* integrator : {"ppm", "photonmapper"}) {

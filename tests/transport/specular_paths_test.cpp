@@ -259,7 +259,8 @@ TEST(SpecularPhotons, AreCausticExactlyAfterSpecularSurfacesAlone) {
     int after_diffuse = 0;
     int untold = 0;  // the way back grazed an edge
     for (const Photon& photon : pass.photons) {
-        Ray ray{offset_from_surface(photon.position, photon.normal, photon.incoming), photon.incoming};
+        const Vector incoming = photon.incoming.unit();
+        Ray ray{offset_from_surface(photon.position, photon.normal.unit(), incoming), incoming};
         bool only_specular = photon.edges > 1;
         bool told = true;
         for (std::uint32_t edge = 1; edge <= photon.edges && told; ++edge) {
@@ -410,7 +411,7 @@ TEST(SpecularPhotons, ThroughASlabHaveItsTransmittanceAtEveryAngle) {
             expected += (1.0 - reflected) / (1.0 + reflected) * 0.5 * (to - from) / 100.0;
         }
         const Flux flux = caustic_flux(pass, 0, [&](const Photon& photon) {
-            const double cosine = static_cast<double>(photon.incoming.y);
+            const double cosine = static_cast<double>(photon.incoming.unit().y);
             return cosine >= from && cosine < to;
         });
         EXPECT_LT(flux.error, 0.015 * expected);
