@@ -11,7 +11,7 @@ namespace photonlab {
 
 namespace {
 
-constexpr int leaf_max_size = 32;
+constexpr int leaf_max_size = 48;
 
 /// A Morton number in the upper half, the photon's place in the lower.
 using SortKey = std::uint64_t;

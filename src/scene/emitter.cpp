@@ -99,8 +99,8 @@ std::uint32_t choose_emitter(const Scene& scene, double u) {
 EmissionSample sample_emission(const Scene& scene, std::uint32_t emitter_index, const Imath::V2f& u_position,
                                double u_triangle, const Imath::V2f& u_direction) {
     const Emitter& emitter = scene.emitters[emitter_index];
-    // power / (probability * total): the densities of position and direction cancel against cosine and area.
-    const Color weight(emitter.power / (emitter.choice_probability * scene.total_power));
+    // The densities of position and direction cancel against cosine and area.
+    const Color& weight = emitter.photon_power;
     if (const auto* light = std::get_if<PointLight>(&emitter.kind))
         return {{light->position, sample_unit_sphere(u_direction)}, weight};
 

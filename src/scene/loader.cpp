@@ -187,7 +187,8 @@ private:
         MeshDescription mesh;
         mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
         mesh.texture_coordinates = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-        mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+        mesh.triangles.emplace_back(0, 1, 2);
+        mesh.triangles.emplace_back(0, 2, 3);
         return mesh;
     }
 

@@ -255,6 +255,7 @@ void add_emitters(Scene& scene, const SceneDescription& description, const ToUni
         emitter.choice_probability = mean_channel(emitter.power) / scene.total_power;
         running += emitter.choice_probability;
         emitter.choice_cdf = running;
+        emitter.photon_power = Color(emitter.power / (emitter.choice_probability * scene.total_power));
     }
     if (!scene.emitters.empty()) scene.emitters.back().choice_cdf = 1.0;
     if (!std::isfinite(scene.total_power))

@@ -65,6 +65,7 @@ struct Emitter {
     ColorD power;               ///< of the whole emitter
     double choice_probability;  ///< with which lights are chosen by power: mean_channel(power) / total
     double choice_cdf;          ///< running sum of choice_probability, the last emitter's is 1
+    Color photon_power = Color(0.0f);  ///< what a photon starts with: power / (choice_probability * total_power)
 };
 
 /// Pinhole camera: the ray through (x, y) in pixels, y down, leaves `position` in direction

@@ -19,7 +19,8 @@ inline MeshDescription square(const VectorD& centre, const VectorD& half_x, cons
     MeshDescription mesh;
     mesh.positions = {centre - half_x - half_y, centre + half_x - half_y, centre + half_x + half_y,
                       centre - half_x + half_y};
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    mesh.triangles.emplace_back(0, 1, 2);
+    mesh.triangles.emplace_back(0, 2, 3);
     return mesh;
 }
 
