@@ -160,6 +160,8 @@ def method_labels(records):
     # A sweep over given radii is named by the radii; the rule would say the same again.
     if "radius_initial" in named or "max_radius" in named:
         named.discard("radius_rule")
+    if ((methods["caustic_radius"] == "") | (methods["caustic_radius"] == methods["radius_initial"])).all():
+        named.discard("caustic_radius")
     first = labels(named)
     clashes = [group for _, group in methods.groupby([methods["scene"], first]) if len(group) > 1]
     named |= varying(enumerate(clashes), empty_counts=True)

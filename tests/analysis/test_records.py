@@ -141,6 +141,15 @@ class Methods(Folder):
         self.assertEqual(self.labels({"radius_rule": "given", "radius_initial": "2"}, {}),
                          ["PPM, initial radius = 2", "PPM, initial radius = 12.35"])
 
+    def test_a_caustic_radius_is_named_where_it_is_not_the_radius(self):
+        given = {**synthetic.PM_RADIUS, "radius_rule": "given"}
+        self.assertEqual(self.labels({**given, "radius_initial": "4", "caustic_radius": "4"},
+                                     {**given, "radius_initial": "8", "caustic_radius": "8"}),
+                         ["PM, initial radius = 4", "PM, initial radius = 8"])
+        self.assertEqual(self.labels({**given, "radius_initial": "4", "caustic_radius": "2"},
+                                     {**given, "radius_initial": "4", "caustic_radius": "4"}),
+                         ["PM, caustic radius = 2", "PM, caustic radius = 4"])
+
     def test_radii_that_only_differ_from_scene_to_scene_are_not_named(self):
         self.assertEqual(self.labels({}, {"scene": "other", "radius_initial": "3"}), ["PPM"])
 
