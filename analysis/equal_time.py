@@ -7,7 +7,7 @@ and the table says which ("less than one pass", "more than recorded"). "not reso
 
 The table has the whole image, and where decomposition.csv is there (decomposition.py) also the experiment's named regions. The
 pictures are those of the recorded pass that is nearest to the budget, which is written under them; below them stand the regions,
-or without any the square with the most contrast.
+or without any the square with the most contrast, each exposed for itself.
 
 Budgets are powers of two of a second that at least one method reaches; the pictures are of the last that all reach.
 """
@@ -198,7 +198,9 @@ def draw_scene(results, scene, rows, labels, table, seconds):
         picture = pictures.to_srgb(image, scale)
         grid[0][column].imshow(picture, interpolation="nearest")
         for row, (name, (left, top, right, bottom)) in enumerate(insets.items(), start=1):
-            grid[row][column].imshow(picture[top:bottom, left:right], interpolation="nearest")
+            place = (slice(top, bottom), slice(left, right))
+            own_scale = pictures.exposure_for((reference * ~is_light[:, :, None])[place])
+            grid[row][column].imshow(pictures.to_srgb(image[place], own_scale), interpolation="nearest")
             grid[row][column].set_xlabel(error_text(name, label), fontsize=7.5)
             grid[row][0].set_ylabel(name, fontsize=8)
             grid[0][column].add_patch(patches.Rectangle((left - 0.5, top - 0.5), right - left, bottom - top, fill=False,
