@@ -150,6 +150,15 @@ class Methods(Folder):
                                      {**given, "radius_initial": "4", "caustic_radius": "4"}),
                          ["PM, caustic radius = 2", "PM, caustic radius = 4"])
 
+    def test_a_setting_that_the_contract_does_not_know_tells_methods_apart(self):
+        made = []
+        for eps in ["0", "0.5"]:
+            for row in synthetic.rows(constant(1.0), seeds=[1, 2], passes=[1]):
+                made.append({**row, "run": f"box_eps-{eps}_seed-{row['seed']}", "eps": eps, "measured": str(len(made))})
+        rows = self.read(made, columns=[*records.COLUMNS, "eps", "measured"])
+        self.assertEqual(records.settings_of(rows), [*records.SETTINGS, "eps"])
+        self.assertEqual(records.methods_in_order(rows), ["PPM, eps = 0", "PPM, eps = 0.5"])
+
     def test_radii_that_only_differ_from_scene_to_scene_are_not_named(self):
         self.assertEqual(self.labels({}, {"scene": "other", "radius_initial": "3"}), ["PPM"])
 
