@@ -1,11 +1,13 @@
-"""Draws how variance, squared bias and MSE fall with the passes, a figure per scene: a row for the whole image and for
-each named region, a line per method. Read by it, RESULTS_DIR/decomposition.csv, is written by decomposition.py.
+"""Draws how variance, squared bias and MSE fall with the passes, with the photons or with the seconds, a figure per scene: a
+row for the whole image and for each named region, a line per method. Read by it, RESULTS_DIR/decomposition.csv, is written by
+decomposition.py.
 
 Bands are 1.96 standard errors to both sides: 95% where errors are Gaussian. Thin dotted lines are what theory predicts
 for these passes (fits.py), through the measured value at the window's first pass. What is not above two standard errors
 is not resolved: a logarithmic axis could only show the half of it that came out high, so it is marked at the bottom.
 
-Where the reference has it, gathered light is drawn, which is what theory is about; otherwise the whole picture.
+Where the reference has it, gathered light is drawn, which is what theory is about; otherwise the whole picture. Seconds are
+those of all light, and means over seeds.
 """
 
 import argparse
@@ -28,6 +30,9 @@ except ImportError as error:
     sys.exit(2)
 
 TITLES = {"variance": "variance", "squared_bias": "squared bias", "mse": "MSE"}
+ROOT_TITLES = {"variance": "√ variance", "squared_bias": "√ squared bias", "mse": "RMSE"}
+AXES = {"passes": ("pass", "pass"), "photons": ("paths_emitted", "light paths emitted"),
+        "seconds": ("seconds", "time of all passes so far (s)")}    # column and title by what is drawn against
 COMPONENT_TITLES = {"gathered": "gathered light", "total": "whole picture"}
 BAND = 1.96    # standard errors
 THEORY_LINE = {"linewidth": 0.7, "linestyle": (0, (1, 1.5)), "zorder": 1.5}
@@ -39,7 +44,7 @@ def read_decomposition(results):
     if not file.is_file():
         raise records.RecordError(f"{file}: is not there; run decomposition.py first")
     rows = records.read_table(file)
-    numbers = ["pass", "seeds", "groups", *(column for quantity in TITLES for column in [quantity, f"{quantity}_error"])]
+    numbers = ["pass", "seeds", "groups", "paths_emitted", "seconds", *(column for quantity in TITLES for column in [quantity, f"{quantity}_error"])]
     missing = {*numbers, "scene", "point", "component", "region"} - set(rows.columns)
     if missing:
         raise records.RecordError(f"{file}: lacks the columns {', '.join(sorted(missing))}; run decomposition.py again")
@@ -54,11 +59,21 @@ def component_to_draw(rows):
     return "gathered" if known.get("gathered", 0) >= known["total"] * 0.999 else "total"
 
 
-def curve_of(rows, quantity):
-    """(passes, values, errors, resolved) of one point and region."""
-    rows = rows[rows[quantity].notna()].sort_values("pass")
+def curve_of(rows, quantity, against="passes"):
+    """(places, values, errors, resolved) of one point and region. What emits no photons has no place against them."""
+    column, _ = AXES[against]
+    rows = rows[rows[quantity].notna() & rows[column].notna()].sort_values("pass")
     values, errors = rows[quantity].to_numpy(), rows[f"{quantity}_error"].to_numpy()
-    return rows["pass"].to_numpy(), values, errors, values > fits.RESOLVED * numpy.nan_to_num(errors)
+    return rows[column].to_numpy(), values, errors, values > fits.RESOLVED * numpy.nan_to_num(errors)
+
+
+def places_of(rows, passes, against):
+    """Where passes are on the axis, by straight lines on logarithmic axes between the recorded ones in `rows`."""
+    known = rows.drop_duplicates("pass").sort_values("pass")
+    column = known[AXES[against][0]]
+    if not len(passes) or column.isna().any():
+        return passes
+    return numpy.exp(numpy.interp(numpy.log(passes), numpy.log(known["pass"]), numpy.log(column)))
 
 
 def theory_of(recorded_rows, rows, component, region):
@@ -82,29 +97,30 @@ def theory_of(recorded_rows, rows, component, region):
     return passes, values
 
 
-def draw_panel(axes, curves, theories, styles, limits):
-    """One region and quantity; `curves` and `theories` are by label."""
+def draw_panel(axes, curves, theories, styles, limits, shape):
+    """One region and quantity; `curves` and `theories` are by label. `shape` is what values go through before they are drawn:
+    the root, or nothing. `limits` are of values that have gone through it."""
     at_bottom = blended_transform_factory(axes.transData, axes.transAxes)
     methods_below = 0    # each has a row of marks of its own
-    for label, (passes, values, errors, resolved) in curves.items():
+    for label, (places, values, errors, resolved) in curves.items():
         look = styles[label]
-        shown = numpy.where(resolved, values, numpy.nan)
-        low = numpy.maximum(values - BAND * errors, limits[0])
-        axes.fill_between(passes, low, values + BAND * errors, where=resolved & numpy.isfinite(errors),
+        shown = shape(numpy.where(resolved, values, numpy.nan))
+        low = numpy.maximum(shape(numpy.maximum(values - BAND * errors, 0)), limits[0])
+        axes.fill_between(places, low, shape(numpy.maximum(values + BAND * errors, 0)), where=resolved & numpy.isfinite(errors),
                           color=look["color"], alpha=0.2, linewidth=0)
-        axes.plot(passes, shown, label=label, markevery=style.marked_places(list(passes)), **look)
+        axes.plot(places, shown, label=label, markevery=style.marked_places(list(places)), **look)
         if not resolved.all():
-            axes.plot(passes[~resolved], [0.03 + 0.045 * methods_below] * int((~resolved).sum()), transform=at_bottom,
+            axes.plot(places[~resolved], [0.03 + 0.045 * methods_below] * int((~resolved).sum()), transform=at_bottom,
                       color=look["color"], **BELOW_MARK)
             methods_below += 1
-    for label, (passes, values) in theories.items():
-        axes.plot(passes, values, color=styles[label]["color"], **THEORY_LINE)
+    for label, (places, values) in theories.items():
+        axes.plot(places, shape(values), color=styles[label]["color"], **THEORY_LINE)
     style.logarithmic(axes.yaxis, *limits)
 
 
-def vertical_range(curves):
+def vertical_range(curves, shape):
     """Limits of a row's axis: every resolved value of its panels, and room for marks below."""
-    seen = [value for passes, values, _, resolved in curves for value in values[resolved]]
+    seen = [value for _, values, _, resolved in curves for value in shape(values[resolved])]
     if not seen:
         return None
     low, high = min(seen), max(seen)
@@ -113,7 +129,7 @@ def vertical_range(curves):
     return low / margin ** (3 if any_below else 1), high * margin
 
 
-def notes(rows, component, any_theory):
+def notes(rows, component, any_theory, against):
     """What a reader has to know to read the figure, in one paragraph."""
     seeds, groups = rows["seeds"].min(), rows["groups"].min()
     text = [f"{COMPONENT_TITLES[component].capitalize()}, {seeds:.0f} seeds in {groups:.0f} groups; per pixel and channel, "
@@ -124,12 +140,15 @@ def notes(rows, component, any_theory):
         text.append("The reference has no second half: its own noise is in squared bias and MSE.")
     if (rows["direct"] == "photons").any():
         text.append("Photons carry direct light.")
+    if against == "photons" and rows["paths_emitted"].isna().any():
+        text.append("Path tracing emits none and is left out.")
     return " ".join(text)
 
 
-def draw_scene(recorded, rows, labels):
+def draw_scene(recorded, rows, labels, against="passes", roots=False):
     """The figure of one scene; None when nothing in it is resolved. `recorded` are the records, `rows` those of
     decomposition.csv, both of the scene."""
+    titles, shape, unit = (ROOT_TITLES, numpy.sqrt, "radiance") if roots else (TITLES, lambda values: values, "radiance²")
     styles = style.method_styles(recorded, labels)
     component = component_to_draw(rows)
     rows = rows[rows["pass"] > 0]    # a logarithmic axis has no place for it
@@ -146,10 +165,12 @@ def draw_scene(recorded, rows, labels):
             passes, predicted = theory_of(recorded[points == point], of_point, component, region)
             for quantity in TITLES:
                 if drawn[quantity].notna().any():
-                    curves[quantity][label_of[point]] = curve_of(drawn, quantity)
-                if quantity in predicted:
-                    theories[quantity][label_of[point]] = (passes, predicted[quantity])
-        limits = vertical_range([curve for of_quantity in curves.values() for curve in of_quantity.values()])
+                    curve = curve_of(drawn, quantity, against)
+                    if len(curve[0]):
+                        curves[quantity][label_of[point]] = curve
+                if quantity in predicted and label_of[point] in curves[quantity]:
+                    theories[quantity][label_of[point]] = (places_of(of_point, passes, against), predicted[quantity])
+        limits = vertical_range([curve for of_quantity in curves.values() for curve in of_quantity.values()], shape)
         if limits:
             lines_of_figure.append((region, curves, theories, limits))
     if not lines_of_figure:
@@ -159,21 +180,24 @@ def draw_scene(recorded, rows, labels):
     any_theory = any(of_quantity for _, _, theories, _ in lines_of_figure for of_quantity in theories.values())
     any_below = any(not resolved.all() for _, curves, _, _ in lines_of_figure for of_quantity in curves.values()
                     for *_, resolved in of_quantity.values())
-    handles = [lines.Line2D([], [], label=label, **styles[label]) for label in labels if label in label_of.values()]
+    places = [place for _, curves, _, _ in lines_of_figure for of_quantity in curves.values()
+              for curve in of_quantity.values() for place in curve[0]]
+    drawn_labels = {label for _, curves, _, _ in lines_of_figure for of_quantity in curves.values() for label in of_quantity}
+    handles = [lines.Line2D([], [], label=label, **styles[label]) for label in labels if label in drawn_labels]
     if any_theory:
         handles.append(lines.Line2D([], [], label="theory", color="#555555", **THEORY_LINE))
     if any_below:
         handles.append(lines.Line2D([], [], label="below resolution", color="#555555", **BELOW_MARK))
-    caption = notes(rows[rows["component"] == component], component, any_theory)
+    caption = notes(rows[rows["component"] == component], component, any_theory, against)
     figure, grid = style.panels_over_legend(len(lines_of_figure), len(TITLES), handles, caption)
-    last = max(2, rows["pass"].max())
     for (region, curves, theories, limits), row in zip(lines_of_figure, grid):
-        for axes, (quantity, title) in zip(row, TITLES.items()):
-            draw_panel(axes, curves[quantity], theories[quantity], styles, limits)
-            style.logarithmic(axes.xaxis, 1 / 1.15, last * 1.15, base_two=True)
+        for axes, (quantity, title) in zip(row, titles.items()):
+            draw_panel(axes, curves[quantity], theories[quantity], styles, limits, shape)
+            style.logarithmic(axes.xaxis, min(places) / 1.15, max(2 * min(places), *places) * 1.15,
+                              base_two=against == "passes", most=4)
             axes.set_title(title, loc="right")
-            axes.set_xlabel("pass")
-        row[0].set_ylabel(f"{region} (radiance²)")
+            axes.set_xlabel(AXES[against][1])
+        row[0].set_ylabel(f"{region} ({unit})")
     grid[0][0].set_title(rows["scene"].iloc[0], loc="left")
     figure.align_ylabels()
     return figure
@@ -182,10 +206,15 @@ def draw_scene(recorded, rows, labels):
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
                                      formatter_class=argparse.RawDescriptionHelpFormatter,
-                                     epilog="Writes RESULTS_DIR/figures/bias-variance-SCENE.png and .pdf.\n\n" +
+                                     epilog="Writes RESULTS_DIR/figures/bias-variance-SCENE.png and .pdf; what is not drawn "
+                                     "by default is in the\nname: bias-variance-SCENE-roots-seconds.\n\n" +
                                      __doc__.split("\n\n", 1)[1])
     parser.add_argument("results", metavar="RESULTS_DIR", type=Path, help="folder of an experiment's results")
-    results = parser.parse_args(arguments).results
+    parser.add_argument("--against", choices=AXES, default="passes", help="the horizontal axis (default: passes); photons are "
+                        "the light paths emitted")
+    parser.add_argument("--roots", action="store_true", help="draw RMSE and the roots of variance and squared bias, in radiance")
+    options = parser.parse_args(arguments)
+    results = options.results
     try:
         recorded = records.read_records(results)
         rows = read_decomposition(results)
@@ -196,11 +225,13 @@ def main(arguments):
         labels = records.methods_in_order(recorded)
         for scene, scene_rows in rows.groupby("scene", sort=False):
             of_scene = recorded[recorded["scene"] == scene]
-            figure = draw_scene(of_scene, scene_rows, [label for label in labels if label in set(of_scene["method"])])
+            figure = draw_scene(of_scene, scene_rows, [label for label in labels if label in set(of_scene["method"])],
+                                options.against, options.roots)
             if figure is None:
                 print(f"{scene}: nothing is resolved, so there is nothing to draw")
                 continue
-            for file in style.save(figure, results, f"bias-variance-{records.file_name(scene)}"):
+            extra = ("-roots" if options.roots else "") + (f"-{options.against}" if options.against != "passes" else "")
+            for file in style.save(figure, results, f"bias-variance-{records.file_name(scene)}{extra}"):
                 print(file)
     except (records.RecordError, OSError) as error:
         print(error, file=sys.stderr)

@@ -263,6 +263,15 @@ def pandas_mean(texts):
     return repr(sum(numbers) / len(numbers)) if numbers else ""
 
 
+def pass_of_images(ensemble, wanted):
+    """The pass that was asked for, or the last."""
+    passes = ensemble.description["passes"]
+    if wanted is not None and wanted not in passes:
+        raise records.RecordError(f"{ensemble.folder}: pass {wanted} was not recorded; expected one of "
+                                  f"{', '.join(map(str, sorted(passes)))} for --images")
+    return max(passes) if wanted is None else wanted
+
+
 def write_images(ensemble, results, number):
     """RESULTS/decomposition/POINT/pass-N.exr: layers `bias` (signed) and `variance` (of one seed), a value a pixel and
     channel; R, G, B are the bias. Returns the file, or None without a reference."""
@@ -297,10 +306,13 @@ def write_table(file, columns, table):
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
                                      formatter_class=argparse.RawDescriptionHelpFormatter,
-                                     epilog="Writes RESULTS_DIR/decomposition.csv and, of the last pass, images of bias "
+                                     epilog="Writes RESULTS_DIR/decomposition.csv and, of one pass, images of bias "
                                      "and variance\nin RESULTS_DIR/decomposition/.\n\n" + __doc__.split("\n\n", 1)[1])
     parser.add_argument("results", metavar="RESULTS_DIR", type=Path, help="folder of an experiment's results")
-    results = parser.parse_args(arguments).results
+    parser.add_argument("--images", type=int, metavar="PASS", help="the recorded pass whose images are written (default: the "
+                        "last)")
+    options = parser.parse_args(arguments)
+    results = options.results
     try:
         recorded = records.read_records(results)
         table = []
@@ -309,7 +321,7 @@ def main(arguments):
             if own is None:
                 continue
             table += table_of(ensemble, results, own)
-            write_images(ensemble, results, max(ensemble.description["passes"]))
+            write_images(ensemble, results, pass_of_images(ensemble, options.images))
         write_table(results / "decomposition.csv", COLUMNS, table)
     except (records.RecordError, OSError) as error:
         print(error, file=sys.stderr)

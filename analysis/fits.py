@@ -15,6 +15,12 @@ Student's distribution with one degree less than groups. Beside it stand
 and a verdict: "agrees" when the interval holds the prediction, "differs" when it does not, "cannot tell" when a quantity is not
 above two standard errors at every pass of the window, or the interval is wider than 1. Most pictures have edges: a squared bias
 that "differs" from the smooth prediction is what theory says of them.
+
+Which alpha has the least MSE is told with the probability of each, by drawing groups of seeds anew with replacement, the same
+groups for all alphas, and counting who wins. With a seed a group MSE is a plain mean over the groups, whatever share of it is
+squared bias, and drawing anew is right for means. With several, the scatter inside the groups is lost and what is drawn comes
+out too low; so it is centred on the estimate, and spread by the root of G / (G - 1), which drawing from G groups falls short of.
+The reference's noise is not drawn: it is common to all alphas, and most of it drops out between them.
 """
 
 import argparse
@@ -37,8 +43,11 @@ WIDEST = 1.0      # interval of a slope that says anything
 RESOLVED = 2.0    # standard errors above 0
 FIT_COLUMNS = ["experiment", "scene", "point", *records.SETTINGS, "component", "region", "quantity", "first_pass",
                "last_pass", "passes", "seeds", "slope", "low", "high", "asymptote", "edge", "predicted", "verdict"]
-BEST_COLUMNS = ["experiment", "scene", "component", "region", "pass", "paths_emitted", "best_alpha", "mse", "runner_up",
-                "difference", "difference_error", "verdict"]
+FAMILY = [column for column in records.SETTINGS if column != "alpha"]    # what alphas that are compared have in common
+BEST_COLUMNS = ["experiment", "scene", *FAMILY, "component", "region", "pass", "paths_emitted", "best_alpha", "probability",
+                "candidates", "mse", "runner_up", "difference", "difference_error", "verdict"]
+DRAWS = 2000       # of groups of seeds
+EXCLUDED = 0.05    # an alpha that is best with less than that is no candidate
 
 
 def default_window(passes):
@@ -192,6 +201,29 @@ def fits_of(ensemble, own, moments, component, window):
     return table
 
 
+def drawn_mse(moments, draws):
+    """MSE from groups of seeds drawn anew: `draws` says in each row how often each group was drawn."""
+    counts, gram, groups = moments.counts, moments.gram, len(moments.counts)
+    seeds = draws @ counts
+    weights = draws * counts / seeds[:, None]
+    of_mean = numpy.einsum("dg,gh,dh->d", weights, gram, weights)
+    variance = ((draws * counts) @ numpy.diag(gram) - seeds * of_mean) / (groups - 1)
+    found = of_mean - moments.floor + variance * (1 - 1 / seeds)
+    return decomposition.decompose(moments)[2] + (found - found.mean()) * math.sqrt(groups / (groups - 1))
+
+
+def probabilities_of_best(family):
+    """{alpha: probability that its MSE is the least} of {alpha: Moments} over the same groups; {} with fewer than three."""
+    groups = len(next(iter(family.values())).counts)
+    if groups < 3:
+        return {}
+    draws = numpy.random.default_rng(1).multinomial(groups, numpy.full(groups, 1 / groups), size=DRAWS).astype(float)
+    drawn = numpy.array([drawn_mse(moments, draws) for moments in family.values()])
+    # What is equal to the last digits, as all alphas are after the first pass, shares a draw.
+    wins = drawn <= drawn.min(axis=0) + 1e-12 * numpy.abs(drawn).max(axis=0)
+    return dict(zip(family, (wins / wins.sum(axis=0)).mean(axis=1).tolist()))
+
+
 def best_alphas(family, component):
     """Rows of best-alphas.csv of points of one scene that differ in alpha alone: {alpha: (own records, seeds by group,
     {(pass, region): Moments})}. All share their seeds, so differences are taken group by group."""
@@ -208,18 +240,23 @@ def best_alphas(family, component):
             if (number, region) not in moments:
                 continue
             at = moments[number, region]
-            found[alpha] = (decomposition.decompose(at)[2], decomposition.replicates(at)[:, 2], at.counts)
+            found[alpha] = (decomposition.decompose(at)[2], decomposition.replicates(at)[:, 2], at)
         if len(found) < 2 or not all(numpy.isfinite(mse) for mse, *_ in found.values()):
             continue
         order = sorted(found, key=lambda alpha: found[alpha][0])
-        (least, least_without, counts), (second, second_without, _) = found[order[0]], found[order[1]]
-        error = float(decomposition.jackknife_error(second - least, second_without - least_without, counts))
+        (least, least_without, at), (second, second_without, _) = found[order[0]], found[order[1]]
+        error = float(decomposition.jackknife_error(second - least, second_without - least_without, at.counts))
+        probabilities = probabilities_of_best({alpha: moments for alpha, (*_, moments) in found.items()})
+        candidates = sorted((alpha for alpha, probability in probabilities.items() if probability >= EXCLUDED), key=float)
         first = first_own.iloc[0]
         of_pass = first_own[(first_own["pass"] == number) & (first_own["component"] == component)]
-        table.append({"experiment": first["experiment"], "scene": first["scene"], "component": component, "region": region,
+        table.append({"experiment": first["experiment"], "scene": first["scene"],
+                      **{column: first[column] for column in FAMILY}, "component": component, "region": region,
                       "pass": number, "paths_emitted": decomposition.pandas_mean(of_pass["paths_emitted"]),
-                      "best_alpha": order[0], "mse": text(least), "runner_up": order[1], "difference": text(second - least),
-                      "difference_error": text(error), "verdict": "" if second - least > RESOLVED * error else "cannot tell"})
+                      "best_alpha": order[0], "probability": text(probabilities.get(order[0])),
+                      "candidates": ";".join(candidates), "mse": text(least), "runner_up": order[1],
+                      "difference": text(second - least), "difference_error": text(error),
+                      "verdict": "" if second - least > RESOLVED * error else "cannot tell"})
     return table
 
 
@@ -227,8 +264,8 @@ def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
                                      formatter_class=argparse.RawDescriptionHelpFormatter,
                                      epilog="Writes RESULTS_DIR/fits.csv and, where alpha was swept, best-alphas.csv: the alpha "
-                                     "of least MSE by\nscene, component, region and pass, with its lead on the runner-up and that "
-                                     "lead's standard error.\n\n" + __doc__.split("\n\n", 1)[1])
+                                     "of least MSE by\nscene, component, region and pass, with its probability, the alphas of 5% "
+                                     "and more, its lead\non the runner-up and that lead's standard error.\n\n" + __doc__.split("\n\n", 1)[1])
     parser.add_argument("results", metavar="RESULTS_DIR", type=Path, help="folder of an experiment's results")
     parser.add_argument("--from", dest="first", type=int, metavar="PASS", help="first pass of the window (default: a 32nd of "
                         "the last, at least 4)")
@@ -252,7 +289,7 @@ def main(arguments):
                     continue
                 table += fits_of(ensemble, own, moments, component, window)
                 if first["integrator"] == "ppm":
-                    rest = tuple(first[column] for column in ["scene", *records.SETTINGS] if column != "alpha")
+                    rest = tuple(first[column] for column in ["scene", *FAMILY])
                     families.setdefault((rest, component), {})[first["alpha"]] = (own, ensemble.seeds,
                                                                                   moments[component])
         decomposition.write_table(options.results / "fits.csv", FIT_COLUMNS, table)

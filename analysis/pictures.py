@@ -42,6 +42,14 @@ def read_component(file, component, photons_carry_direct=False):
     return None if any(colour is None for colour in colours) else sum(colours)
 
 
+def read_layers(files):
+    """{"picture": radiance, and "emission", "direct", "gathered" where all files have all three} of a snapshot or, as the mean
+    of its halves, of a reference."""
+    layers = {"picture": read_reference(files, "total", False)}
+    parts = {layer: read_reference(files, layer, False) for layer in ["emission", "direct", "gathered"]}
+    return layers if any(part is None for part in parts.values()) else {**layers, **parts}
+
+
 def read_reference(files, component, photons_carry_direct):
     """The mean of a reference's halves, or the single image; None when there is none or it lacks the component."""
     halves = [read_component(file, component, photons_carry_direct) for file in files]

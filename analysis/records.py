@@ -113,8 +113,16 @@ def to_numbers(file, texts, whole):
     return numbers.astype(float)
 
 
+def settings_of(records):
+    """The columns of settings: SETTINGS and, of columns that are not in the contract, those that no row of a point changes (a
+    point is a run without its seed), but some point does."""
+    points = records["run"].str.rpartition("_seed-")[0].where(records["run"].str.contains("_seed-"), records["run"])
+    return SETTINGS + [column for column in records.columns if column not in [*COLUMNS, "seconds_direct", "method"] and
+                       records[column].nunique() > 1 and (records[column].groupby(points).nunique() == 1).all()]
+
+
 def refuse_repeated_rows(file, records):
-    repeated = records.duplicated(["scene", *SETTINGS, "seed", "pass", "component"])
+    repeated = records.duplicated(["scene", *settings_of(records), "seed", "pass", "component"])
     if repeated.any():
         row = records[repeated].iloc[0]
         raise RecordError(f"{place(file, repeated)}: run {row['run']} repeats pass {row['pass']:.0f}, "
@@ -143,15 +151,16 @@ def method_labels(records):
     """A label for each row: the integrator, and those settings that take more than one value among the methods of some
     scene to which they apply. Where that leaves two methods of a scene with one label, what only one of them has is
     named as well."""
-    methods = records[["scene", *SETTINGS]].drop_duplicates()
+    settings = settings_of(records)
+    methods = records[["scene", *settings]].drop_duplicates()
 
     def varying(groups, empty_counts):
-        return {column for _, group in groups for column in SETTINGS
+        return {column for _, group in groups for column in settings
                 if group[column][empty_counts | (group[column] != "")].nunique() > 1}
 
     def labels(columns):
         def label(row):
-            return ", ".join(setting_text(column, row[column]) for column in SETTINGS
+            return ", ".join(setting_text(column, row[column]) for column in settings
                              if column in columns and row[column] != "")
         return methods.apply(label, axis=1)
 
@@ -160,11 +169,13 @@ def method_labels(records):
     # A sweep over given radii is named by the radii; the rule would say the same again.
     if "radius_initial" in named or "max_radius" in named:
         named.discard("radius_rule")
+    if ((methods["caustic_radius"] == "") | (methods["caustic_radius"] == methods["radius_initial"])).all():
+        named.discard("caustic_radius")
     first = labels(named)
     clashes = [group for _, group in methods.groupby([methods["scene"], first]) if len(group) > 1]
     named |= varying(enumerate(clashes), empty_counts=True)
     methods = methods.assign(method=labels(named))
-    return records.merge(methods, on=["scene", *SETTINGS], how="left")["method"].to_numpy()
+    return records.merge(methods, on=["scene", *settings], how="left")["method"].to_numpy()
 
 
 def methods_in_order(records):
@@ -173,10 +184,12 @@ def methods_in_order(records):
     def rank(value, order):
         return (order.index(value) if value in order else len(order), value)
 
+    columns = settings_of(records)
+
     def key(item):
         settings = item[1]
         rest = []
-        for column in SETTINGS[2:]:
+        for column in columns[2:]:
             if column == "radius_rule":    # the radius itself orders better
                 continue
             number = as_number(settings[column])

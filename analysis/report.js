@@ -41,9 +41,9 @@ function halfToNumber(bits) {
 
 const halves = Float32Array.from({length: 65536}, (_, bits) => halfToNumber(bits));
 
-// Radiance of an image, three numbers a pixel.
-async function decode(image, scene) {
-    const packed = Uint8Array.from(atob(image.pixels), (letter) => letter.charCodeAt(0));
+// Radiance of a layer, three numbers a pixel.
+async function decode(pixelsInBase64, scene) {
+    const packed = Uint8Array.from(atob(pixelsInBase64), (letter) => letter.charCodeAt(0));
     const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
     const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
     const pixels = scene.width * scene.height;
@@ -54,6 +54,18 @@ async function decode(image, scene) {
             radiance[3 * pixel + channel] = halves[bytes[place] | bytes[3 * pixels + place] << 8] / scene.scale;
         }
     return radiance;
+}
+
+// Radiance of a layer of an image, or the picture: the sum of its layers where it is not given. NaN for what it does not have.
+async function radianceOf(shot, layer, scene) {
+    const given = shot.layers;
+    const names = layer in given ? [layer] : layer === "picture" ? Object.keys(given) : [];
+    if (!names.length) return new Float32Array(3 * scene.width * scene.height).fill(NaN);
+    scene.decoded ??= [];
+    const parts = await Promise.all(names.map((name) => scene.decoded[given[name]] ??=
+        decode(scene.pixels[given[name]], scene)));
+    return parts.length === 1 ? parts[0] : parts[0].map((value, place) =>
+        parts.slice(1).reduce((sum, part) => sum + part[place], value));
 }
 
 // What a screen is sent for a linear value, from 0 to 255.
@@ -80,6 +92,8 @@ function startViewer(data) {
     let place = null;       // [x, y] of the pixel whose values are shown
 
     const chosen = (slot) => scene.images[element(`image-${slot}`).value];
+    const shotOf = (slot) => chosen(slot).seeds[element(`seed-${slot}`).value];
+    const layer = () => element("layer").value;
     const exposure = () => scene.exposure * 2 ** slider("exposure");
     const differenceScale = () => exposure() * 2 ** slider("gain");
 
@@ -152,8 +166,13 @@ function startViewer(data) {
         element("flip").textContent = flipped ? "Flip to A" : "Flip to B";
 
         const named = (slot) => {
-            const {name, caption} = chosen(slot);
-            return `${slot.toUpperCase()}: ${name}${caption ? ` (${caption})` : ""}`;
+            const {name, seeds} = chosen(slot);
+            const {seed, captions, layers} = shotOf(slot);
+            const caption = captions[layer() === "picture" ? "total" : layer()];
+            const has = layer() === "picture" || layer() in layers;
+            return `${slot.toUpperCase()}: ${name}${seeds.length > 1 ? `, seed ${seed}` : ""}` +
+                (layer() === "picture" ? "" : has ? `, ${layer()}` : `: has no layer ${layer()}`) +
+                (caption ? ` (${caption})` : "");
         };
         element("legend").textContent = now === "flip" ? named(flipped ? "b" : "a") : `${named("a")}\n${named("b")}`;
 
@@ -208,11 +227,10 @@ function startViewer(data) {
 
     // Images are decoded when they are first shown. A choice made while another one is decoded wins.
     async function load() {
-        const wanted = [chosen("a"), chosen("b")];
-        for (const image of wanted) image.radiance ??= decode(image, scene);
+        const wanted = [shotOf("a"), shotOf("b"), layer()];
         try {
-            const decoded = await Promise.all(wanted.map((image) => image.radiance));
-            if (wanted[0] !== chosen("a") || wanted[1] !== chosen("b")) return;
+            const decoded = await Promise.all(wanted.slice(0, 2).map((shot) => radianceOf(shot, wanted[2], scene)));
+            if (wanted[0] !== shotOf("a") || wanted[1] !== shotOf("b") || wanted[2] !== layer()) return;
             [a, b] = decoded;
             draw();
         } catch (error) {
@@ -232,6 +250,17 @@ function startViewer(data) {
         }));
         const same = scene.images.findIndex((image) => image.name === before);
         select.value = same >= 0 ? same : fallback;
+        fillSeeds(slot);
+    }
+
+    // The seeds of the image that is chosen; the one that was chosen before stays where it is there.
+    function fillSeeds(slot) {
+        const select = element(`seed-${slot}`);
+        const before = select.selectedOptions[0]?.textContent;
+        const {seeds} = chosen(slot);
+        select.replaceChildren(...seeds.map(({seed}, index) => new Option(seed ?? "–", index)));
+        select.value = Math.max(0, seeds.findIndex(({seed}) => String(seed) === before));
+        select.disabled = seeds.length < 2;
     }
 
     // First the last pass of the last method against the reference, or without one against the first method's first.
@@ -300,7 +329,11 @@ function startViewer(data) {
 
     element("scene").append(...data.scenes.map((one, index) => new Option(one.name, index)));
     element("scene").addEventListener("change", showScene);
-    for (const slot of ["a", "b"]) element(`image-${slot}`).addEventListener("change", load);
+    for (const slot of ["a", "b"]) {
+        element(`image-${slot}`).addEventListener("change", () => { fillSeeds(slot); load(); });
+        element(`seed-${slot}`).addEventListener("change", load);
+    }
+    element("layer").addEventListener("change", load);
     for (const id of ["divider-place", "map", "gain", "exposure", "zoom"]) element(id).addEventListener("input", draw);
     for (const radio of document.querySelectorAll("input[name=mode]")) radio.addEventListener("change", draw);
     element("flip").addEventListener("click", flip);

@@ -8,7 +8,9 @@ not have (figures, snapshots, a reference) is said at the top of the page.
 The viewer is given radiance, not pictures: its exposure acts before sRGB's transfer function. A pixel is three half
 floats, scaled by a power of two such that white at the scene's usual exposure is near 1. They tell 2000 levels a stop
 from 14 stops below white on, where a screen tells 90 at most, so that nothing bands. An image is all low bytes and then
-all high bytes of its halves (these two compress apart better), by channel, deflated, in base64.
+all high bytes of its halves (these two compress apart better), by channel, deflated, in base64. What is given are the layers
+emission, direct and gathered, each once however many images share it; the viewer adds them up to the picture. The picture itself
+is given where a file has no layers, or where they are not its sum.
 """
 
 import argparse
@@ -207,60 +209,83 @@ def encoded(image, scale):
     return base64.b64encode(zlib.compress(planes.T.tobytes(), 9)).decode()
 
 
-def snapshots(results, rows, labels, runs, missing, name):
-    """[(method, pass, image, caption, file)] of each method's lowest seed."""
+def snapshots(results, rows, labels, runs, missing, name, seeds):
+    """[(method, pass, seed, layers, captions by component, file)] of each method's lowest seeds that have snapshots."""
     shown = []
     for label in labels:
         of_method = rows[rows["method"] == label]
-        of_run = of_method[of_method["seed"] == of_method["seed"].min()]
-        run = of_run["run"].iloc[0]
-        before = len(shown)
-        for snapshot in runs[run]["snapshots"] if run in runs else []:
-            file = results / "runs" / run / snapshot["file"]
-            if file.is_file():
-                of_pass = of_run[(of_run["pass"] == snapshot["pass"]) & (of_run["component"] == "total")]
-                caption = gallery.caption(of_pass) if len(of_pass) else ""
-                shown.append((label, snapshot["pass"], pictures.read_component(file, "total"), caption, file))
-        if len(shown) == before and run in runs:
-            missing.append(f"{name}: no snapshots of {label} (seed {of_run['seed'].iloc[0]:.0f}).")
+        own = []    # [(seed, its rows, files by pass)]
+        for seed, of_run in sorted(of_method.groupby("seed"), key=lambda pair: pair[0]):
+            run = of_run["run"].iloc[0]
+            files = {snapshot["pass"]: results / "runs" / run / snapshot["file"]
+                     for snapshot in (runs[run]["snapshots"] if run in runs else [])}
+            files = {number: file for number, file in files.items() if file.is_file()}
+            if files:
+                own.append((int(seed), of_run, files))
+        if not own and any(run in runs for run in of_method["run"]):
+            missing.append(f"{name}: no snapshots of {label} (seed {of_method['seed'].min():.0f}).")
+        if len(own) > seeds:
+            missing.append(f"{name}: images of {seeds} of the {len(own)} seeds of {label}; --seeds gives more.")
+        for number in dict.fromkeys(number for *_, files in own[:seeds] for number in files):
+            for seed, of_run, files in own[:seeds]:
+                if number in files:
+                    of_pass = of_run[of_run["pass"] == number]
+                    captions = {component: gallery.caption(of_component)
+                                for component, of_component in of_pass.groupby("component") if component != "emission"}
+                    shown.append((label, number, seed, pictures.read_layers([files[number]]), captions, files[number]))
     return shown
 
 
 def references(results, rows, runs, missing, name):
-    """{path: (image, its first file)} of the references that the runs were judged by."""
+    """{path: (layers, its first file)} of the references that the runs were judged by."""
     read = {}
     for run in rows["run"].unique():
         path = found(runs.get(run, {}), "reference", "path")
         if path and path not in read:
             files = records.reference_files(results, runs[run])
-            read[path] = (pictures.read_reference(files, "total", False), files[0]) if files else None
+            read[path] = (pictures.read_layers(files), files[0]) if files else None
     missing += [f"{name}: the reference is not found at {path}." for path, image in read.items() if image is None]
     if not read and any(run in runs for run in rows["run"]):
         missing.append(f"{name}: no reference, so no errors.")
     return {path: image for path, image in read.items() if image is not None}
 
 
-def viewer_scene(results, name, rows, labels, runs, missing):
+def given_layers(layers):
+    """What the viewer needs of an image: its three layers where they add up to the picture, all where they do not."""
+    picture = layers["picture"]
+    parts = [layer for name, layer in layers.items() if name != "picture"]
+    if parts and numpy.allclose(sum(parts), picture, rtol=1e-4, atol=1e-6 * numpy.nanmax(numpy.abs(picture), initial=0)):
+        return {name: layer for name, layer in layers.items() if name != "picture"}
+    return layers
+
+
+def viewer_scene(results, name, rows, labels, runs, missing, seeds):
     """A scene for the viewer, its images all of one size; None without images."""
-    shown = snapshots(results, rows, labels, runs, missing, name)
+    shown = snapshots(results, rows, labels, runs, missing, name, seeds)
     judges = references(results, rows, runs, missing, name)
-    images = [(f"{label}, pass {number}", label, image, caption, file) for label, number, image, caption, file in shown]
-    images += [("reference" if len(judges) == 1 else f"reference {path}", "reference", image, "", file)
-               for path, (image, file) in judges.items()]
+    images = [(f"{label}, pass {number}", label, seed, layers, captions, file)
+              for label, number, seed, layers, captions, file in shown]
+    images += [("reference" if len(judges) == 1 else f"reference {path}", "reference", None, layers, {}, file)
+               for path, (layers, file) in judges.items()]
     if not images:
         return None
-    first, first_file = images[0][2], images[0][4]
-    for *_, image, _, file in images:
-        if image.shape != first.shape:
+    *_, first, _, first_file = images[0]
+    for *_, layers, _, file in images:
+        if layers["picture"].shape != first["picture"].shape:
             raise records.RecordError(f"{file}: differs in size from {first_file}")
-    exposure = pictures.exposure_for(gallery.lit_by_scene(images[-1][2], first_file))
+    exposure = pictures.exposure_for(gallery.lit_by_scene(images[-1][3]["picture"], first_file))
     scale = 2.0 ** round(math.log2(exposure))
-    return {"name": name, "width": first.shape[1], "height": first.shape[0], "scale": scale, "exposure": exposure,
-            "images": [{"name": image_name, "group": group, "caption": caption, "pixels": encoded(image, scale)}
-                       for image_name, group, image, caption, _ in images]}
+    places, listed = {}, {}    # of encoded pixels; of images by name
+    for image_name, group, seed, layers, captions, _ in images:
+        image = listed.setdefault(image_name, {"name": image_name, "group": group, "seeds": []})
+        image["seeds"].append({"seed": seed, "captions": captions, "layers": {
+            layer: places.setdefault(encoded(radiance, scale), len(places))
+            for layer, radiance in given_layers(layers).items()}})
+    return {"name": name, "width": first["picture"].shape[1], "height": first["picture"].shape[0], "scale": scale,
+            "exposure": exposure, "pixels": list(places), "images": list(listed.values())}
 
 
-def viewer_scenes(results, rows, labels, runs, missing):
+def viewer_scenes(results, rows, labels, runs, missing, seeds):
     """Every scene's images. Only images of one size can be compared, so a scene of several sizes is several here."""
     scenes = []
     for scene, of_scene in rows.groupby("scene", sort=False):
@@ -268,7 +293,7 @@ def viewer_scenes(results, rows, labels, runs, missing):
         for (width, height), of_size in sizes:
             name = scene if sizes.ngroups == 1 else f"{scene}, {width} × {height}"
             own_labels = [label for label in labels if label in set(of_size["method"])]
-            scenes.append(viewer_scene(results, name, of_size, own_labels, runs, missing))
+            scenes.append(viewer_scene(results, name, of_size, own_labels, runs, missing, seeds))
     return [scene for scene in scenes if scene]
 
 
@@ -292,7 +317,11 @@ VIEWER = """
 <div id="controls">
 <label>Scene <select id="scene"></select></label>
 <label>A <select id="image-a"></select></label>
+<label>Seed of A <select id="seed-a"></select></label>
 <label>B <select id="image-b"></select></label>
+<label>Seed of B <select id="seed-b"></select></label>
+<label>Layer <select id="layer"><option value="picture">picture</option><option>emission</option><option>direct</option>
+<option>gathered</option></select></label>
 <fieldset><legend>Compare</legend>
 <label><input type="radio" name="mode" value="flip" checked> flip</label>
 <label><input type="radio" name="mode" value="wipe"> wipe</label>
@@ -314,8 +343,8 @@ VIEWER = """
 wipe mode the divider follows the mouse. After a click or <kbd>tab</kbd> to the picture, arrow keys move the pixel.</p>
 </div>
 </div>
-<p class="small">Radiance (whole image, each method's lowest seed) in half floats: values and differences are exact to
-0.05% of a pixel's radiance. Pixels that are not a number are magenta.</p>
+<p class="small">Radiance in half floats: values and differences are exact to 0.05% of a pixel's radiance. Pixels that are not
+a number, and layers that an image does not have, are magenta. Where photons carry direct light, it is in the layer gathered.</p>
 </section>
 """
 
@@ -388,15 +417,15 @@ def inlined(data):
     return json.dumps(data, ensure_ascii=False).replace("<", "\\u003c")
 
 
-def page(results):
-    """The whole page as text."""
+def page(results, seeds):
+    """The whole page as text, with images of up to `seeds` seeds a method."""
     rows = records.read_records(results)
     for column in COUNTERS + MEMORY:
         rows[column] = records.to_numbers(results / "iterations.csv", rows[column], whole=False)
     labels = records.methods_in_order(rows)
     missing = []
     runs = read_runs(results, rows, missing)
-    scenes = viewer_scenes(results, rows, labels, runs, missing)
+    scenes = viewer_scenes(results, rows, labels, runs, missing, seeds)
     figure_section = figures(results, missing)
     tables = "".join(result_tables(scene, of_scene, [label for label in labels if label in set(of_scene["method"])])
                      for scene, of_scene in rows.groupby("scene", sort=False))
@@ -450,15 +479,26 @@ Seconds and photons: means over seeds; memory: the largest. A click on a column'
 """
 
 
+def whole_positive(text):
+    """A whole number above 0 from the command line."""
+    value = int(text)
+    if value < 1:
+        raise ValueError(text)
+    return value
+
+
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
                                      formatter_class=argparse.RawDescriptionHelpFormatter,
                                      epilog=__doc__.split("\n\n", 1)[1])
     parser.add_argument("results", metavar="RESULTS_DIR", type=Path,
                         help="folder of an experiment's results: iterations.csv and runs/ are in it")
-    results = parser.parse_args(arguments).results
+    parser.add_argument("--seeds", type=whole_positive, default=2, metavar="N", help="how many seeds of each method the viewer "
+                        "has images of, of those with snapshots (default: 2); the page grows with it")
+    options = parser.parse_args(arguments)
+    results = options.results
     try:
-        text = page(results).encode()
+        text = page(results, options.seeds).encode()
         file = results / "report.html"
         file.write_bytes(text)
         print(f"{file} ({len(text) / 1e6:.1f} MB)")

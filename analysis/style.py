@@ -63,9 +63,9 @@ def marked_places(places, most=9):
     return sorted({min(range(len(places)), key=lambda i: abs(math.log(places[i]) - target)) for target in wanted})
 
 
-def logarithmic(axis, low, high, base_two=False):
-    """Makes an axis logarithmic from low to high, with as many labels as have room, all as plain numbers where they are
-    short."""
+def logarithmic(axis, low, high, base_two=False, most=6):
+    """Makes an axis logarithmic from low to high, with as many labels as have room (`most`, or 8 powers of two), all as
+    plain numbers where they are short."""
     (axis.axes.set_xscale if axis.axis_name == "x" else axis.axes.set_yscale)("log")
     (axis.axes.set_xlim if axis.axis_name == "x" else axis.axes.set_ylim)(low, high)
     if base_two:
@@ -75,9 +75,9 @@ def logarithmic(axis, low, high, base_two=False):
         for digits in [(1, 1.5, 2, 3, 5, 7), (1, 2, 5), (1, 3), (1,)]:
             ticks = [digit * 10.0 ** power for power in range(-30, 31) for digit in digits
                      if low <= digit * 10.0 ** power <= high]
-            if len(ticks) <= 6:
+            if len(ticks) <= most:
                 break
-        ticks = every_nth(ticks, most=6)
+        ticks = every_nth(ticks, most)
     if len(ticks) < 3:    # a short way on a logarithmic axis is nearly a linear one
         ticks = [tick for tick in ticker.MaxNLocator(4).tick_values(low, high) if low <= tick <= high]
     axis.set_major_locator(ticker.FixedLocator(ticks))

@@ -39,6 +39,33 @@ class BiasVariance(unittest.TestCase):
         for name in ["bias-variance-cornell-box.png", "bias-variance-cornell-box.pdf"]:
             self.assertIn(name, output)
 
+    def test_a_curve_lies_where_its_photons_and_seconds_are(self):
+        rows = bias_variance.read_decomposition(self.results)
+        own = rows[(rows["point"] == "box_alpha-0.9") & (rows["component"] == "gathered") & (rows["region"] == "image") &
+                   (rows["pass"] > 0)]
+        for against, place in [("passes", lambda n: n), ("photons", lambda n: 50000 * n), ("seconds", lambda n: 0.01 + n / 4)]:
+            places, values, *_ = bias_variance.curve_of(own, "mse", against)
+            numpy.testing.assert_allclose(places, [place(n) for n in [1, 2, 4, 8, 16, 32, 64, 128]])
+            numpy.testing.assert_allclose(bias_variance.places_of(own, numpy.array([4, 128]), against), [place(4), place(128)])
+        self.assertEqual(len(bias_variance.curve_of(own.assign(paths_emitted=numpy.nan), "mse", "photons")[0]), 0)
+
+    def test_roots_are_drawn_of_the_same_values(self):
+        recorded, rows = records.read_records(self.results), bias_variance.read_decomposition(self.results)
+        squares, roots = (bias_variance.draw_scene(recorded, rows, records.methods_in_order(recorded), "seconds", roots)
+                          for roots in [False, True])
+        for one, other in zip(squares.axes, roots.axes):
+            for line, root in zip(one.lines, other.lines):
+                if line.get_marker() in ["o", "s"]:
+                    numpy.testing.assert_allclose(root.get_ydata() ** 2, line.get_ydata())
+                    numpy.testing.assert_allclose(root.get_xdata(), 0.01 + 2.0 ** numpy.arange(8) / 4)
+        self.assertEqual([axes.get_ylabel() for axes in roots.axes[::3]], [f"{region} (radiance)" for region in
+                                                                          ["image", "smooth", "edge"]])
+        self.assertIn("(s)", roots.axes[0].get_xlabel())
+
+    def test_the_file_is_named_after_the_axes(self):
+        _, output, _ = synthetic.run(bias_variance, self.results, "--against", "photons", "--roots")
+        self.assertIn("bias-variance-cornell-box-roots-photons.pdf", output)
+
     def test_what_is_not_above_two_errors_is_not_resolved(self):
         rows = bias_variance.read_decomposition(self.results)
         gathered = rows[(rows["component"] == "gathered") & (rows["region"] == "image") & (rows["pass"] > 0)]

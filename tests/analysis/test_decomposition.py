@@ -123,6 +123,17 @@ class Files(unittest.TestCase):
         self.assertAlmostEqual(variance.mean() / (0.01 / 128), 1, delta=0.05)
         self.assertEqual(pictures.read_component(image, "bias").shape, (made.HEIGHT, made.WIDTH, 3))
 
+    def test_images_are_of_the_pass_that_is_asked_for(self):
+        made.write_ensemble(self.results, "box_ppm", [1, 2, 3, 4], lambda n: 0.0, lambda n: 0.1 * max(1, n), self.random)
+        made.write_records(self.results, {"box_ppm": {}}, [1, 2, 3, 4])
+        self.assertEqual(synthetic.run(decomposition, self.results, "--images", "4")[0], 0)
+        self.assertEqual([file.name for file in (self.results / "decomposition/box_ppm").iterdir()], ["pass-000004.exr"])
+        variance = pictures.read_component(self.results / "decomposition/box_ppm/pass-000004.exr", "variance")
+        self.assertAlmostEqual(variance.mean(), 0.16, delta=0.02)
+        code, _, errors = synthetic.run(decomposition, self.results, "--images", "5")
+        self.assertEqual(code, 2)
+        self.assertIn("box_ppm: pass 5 was not recorded; expected one of 0, 1, 2, 4", errors)
+
     def test_more_seeds_than_slots_are_in_the_sums(self):
         rows = self.check(list(range(1, 36)))
         self.assertEqual(rows["total", "image", 1]["groups"], "16")

@@ -9,7 +9,9 @@ import numpy
 import synthetic
 
 try:
+    import decomposition
     import equal_time
+    import synthetic_ensembles as made
     from test_strip import layered, write_exr
 except ImportError as error:
     raise unittest.SkipTest(f"{error} (Debian: python3-openimageio)")
@@ -23,14 +25,14 @@ class EqualTime(unittest.TestCase):
 
     def write(self, reference=None):
         """A pass of ppm takes 0.25 s (and the first 0.01 s more), one of path 1 s; errors fall as 1 / n and 1 / n^2."""
-        made = synthetic.rows(lambda seed, number, component: 1e-2 / max(1, number), seeds=[1, 2])
+        ppm = synthetic.rows(lambda seed, number, component: 1e-2 / max(1, number), seeds=[1, 2])
         path = synthetic.rows(lambda seed, number, component: 1e-2 / max(1, number) ** 2, seeds=[1, 2],
                               integrator="path", schedule="", alpha="", kernel="", direct="", direct_samples="",
                               photons_per_pass="", radius_rule="", radius_initial="")
         for row in path:
             row["seconds"] = str(float(row["pass"]))
-        synthetic.write_csv(self.results, made + path)
-        for run in sorted({row["run"] for row in made + path}):
+        synthetic.write_csv(self.results, ppm + path)
+        for run in sorted({row["run"] for row in ppm + path}):
             folder = synthetic.write_run(self.results, run, [16, 64], reference, working_directory=str(self.results))
             for number in [16, 64]:
                 write_exr(folder / f"snapshots/pass-{number:06}.exr", layered(1.0, 0.5))
@@ -44,10 +46,15 @@ class EqualTime(unittest.TestCase):
         code, _, errors = synthetic.run(equal_time, self.results)
         self.assertEqual((code, errors), (0, ""))
         rows = [row for row in self.table() if row["component"] == "total"]
-        # Both reach 1 s (path's first pass) to 16.01 s (ppm's last).
-        self.assertEqual(sorted({float(row["seconds"]) for row in rows}), [1, 2, 4, 8, 16])
+        # ppm is recorded from 0.26 s to 16.01 s, path from 1 s to 64 s.
+        self.assertEqual(sorted({float(row["seconds"]) for row in rows}), [0.5, 1, 2, 4, 8, 16, 32, 64])
         for row in rows:
             seconds = float(row["seconds"])
+            note = ("more than recorded" if row["method"] == "PPM" and seconds > 16.01 else
+                    "less than one pass" if row["method"] != "PPM" and seconds < 1 else "")
+            self.assertEqual((row["note"], row["rmse"] == "", row["region"]), (note, note != "", "image"))
+            if note:
+                continue
             if row["method"] == "PPM":
                 expected = 1e-2 / ((seconds - 0.01) / 0.25)
                 self.assertAlmostEqual(float(row["mse"]) / expected, 1, delta=0.01)
@@ -61,6 +68,29 @@ class EqualTime(unittest.TestCase):
         code, output, errors = synthetic.run(equal_time, self.results)
         self.assertEqual((code, errors), (0, ""))
         self.assertIn("equal-time-cornell-box.png", output)
+
+    def test_the_regions_of_the_experiment_are_in_the_table_and_are_the_insets(self):
+        seeds = [1, 2, 3]
+        made.write_reference(self.results, 0.0, numpy.random.default_rng(1))
+        bias = numpy.zeros((made.HEIGHT, made.WIDTH, 1))
+        bias[12:, 16:] = 0.1    # the region "edge"
+        made.write_ensemble(self.results, "box", seeds, lambda n: bias, lambda n: 0.0, numpy.random.default_rng(2))
+        made.write_records(self.results, {"box": {"width": str(made.WIDTH), "height": str(made.HEIGHT)}}, seeds)
+        self.assertEqual(synthetic.run(decomposition, self.results)[0], 0)
+        for seed in seeds:
+            folder = synthetic.write_run(self.results, f"box_seed-{seed}", [16], "reference", working_directory=str(self.results))
+            shape = numpy.ones((made.HEIGHT, made.WIDTH))
+            write_exr(folder / "snapshots/pass-000016.exr", {channel: shape for channel in "RGB"})
+        code, output, errors = synthetic.run(equal_time, self.results)
+        self.assertEqual((code, errors), (0, ""))
+        self.assertIn("equal-time-cornell-box.png", output)
+        for row in self.table():
+            if row["region"] != "image":    # those of the image are the records', which are made up
+                self.assertEqual(row["rmse"] != "", row["region"] == "edge", row)    # "smooth" has no error at all
+                self.assertTrue(row["note"] == "not resolved" or abs(float(row["rmse"]) - 0.1) < 1e-6)
+        self.assertEqual({row["region"] for row in self.table()}, {"image", "smooth", "edge"})
+        self.assertEqual(equal_time.insets_of(self.results, "cornell-box", numpy.ones((made.HEIGHT, made.WIDTH, 3)), None),
+                         made.REGIONS)
 
     def test_insets_have_no_light_in_them(self):
         reference = numpy.zeros((40, 40, 3))
@@ -77,9 +107,10 @@ class EqualTime(unittest.TestCase):
         import records
         rows = records.read_records(self.results)
         curve = equal_time.curve_of(rows[rows["method"] == "PPM"], "total")
-        self.assertIsNone(equal_time.at_budget(curve, 0.1))
-        self.assertIsNone(equal_time.at_budget(curve, 100))
-        self.assertIsNotNone(equal_time.at_budget(curve, 3.0))
+        self.assertEqual(equal_time.at_budget(curve, 0.1), "less than one pass")
+        self.assertEqual(equal_time.at_budget(curve, 100), "more than recorded")
+        self.assertEqual(equal_time.at_budget(curve * [1, 1, -1, 1, 1], 3.0), "not resolved")
+        self.assertAlmostEqual(equal_time.at_budget(curve, 3.0)[0], 11.96, delta=0.05)
 
 
 if __name__ == "__main__":

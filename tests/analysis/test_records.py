@@ -141,6 +141,24 @@ class Methods(Folder):
         self.assertEqual(self.labels({"radius_rule": "given", "radius_initial": "2"}, {}),
                          ["PPM, initial radius = 2", "PPM, initial radius = 12.35"])
 
+    def test_a_caustic_radius_is_named_where_it_is_not_the_radius(self):
+        given = {**synthetic.PM_RADIUS, "radius_rule": "given"}
+        self.assertEqual(self.labels({**given, "radius_initial": "4", "caustic_radius": "4"},
+                                     {**given, "radius_initial": "8", "caustic_radius": "8"}),
+                         ["PM, initial radius = 4", "PM, initial radius = 8"])
+        self.assertEqual(self.labels({**given, "radius_initial": "4", "caustic_radius": "2"},
+                                     {**given, "radius_initial": "4", "caustic_radius": "4"}),
+                         ["PM, caustic radius = 2", "PM, caustic radius = 4"])
+
+    def test_a_setting_that_the_contract_does_not_know_tells_methods_apart(self):
+        made = []
+        for eps in ["0", "0.5"]:
+            for row in synthetic.rows(constant(1.0), seeds=[1, 2], passes=[1]):
+                made.append({**row, "run": f"box_eps-{eps}_seed-{row['seed']}", "eps": eps, "measured": str(len(made))})
+        rows = self.read(made, columns=[*records.COLUMNS, "eps", "measured"])
+        self.assertEqual(records.settings_of(rows), [*records.SETTINGS, "eps"])
+        self.assertEqual(records.methods_in_order(rows), ["PPM, eps = 0", "PPM, eps = 0.5"])
+
     def test_radii_that_only_differ_from_scene_to_scene_are_not_named(self):
         self.assertEqual(self.labels({}, {"scene": "other", "radius_initial": "3"}), ["PPM"])
 

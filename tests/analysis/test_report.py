@@ -44,7 +44,8 @@ def make_results(results, scenes=("cornell-box",), passes=(1, 64), reference="re
             for run in sorted({row["run"] for row in own}):
                 folder = synthetic.write_run(results, run, passes, reference, working_directory=str(results))
                 for number in passes:
-                    channels = layered(0.3 + 0.05 * place + 0.02 * len(own[0]["mode"]) + 0.1 / (1 + number), 0.25)
+                    channels = layered(0.3 + 0.05 * place + 0.02 * len(own[0]["mode"]) + 0.1 / (1 + number) +
+                                       0.03 * run.endswith("2"), 0.25)
                     write_exr(folder / f"snapshots/pass-{number:06}.exr", channels)
                     if run.endswith("1"):
                         image = numpy.stack([channels[channel] for channel in "RGB"], axis=2)
@@ -193,6 +194,20 @@ class Page(InFolder):
         self.assertIn("the reference is not found at somewhere/else", text)
         self.assertIn('id="viewer"', text)
 
+    def test_images_are_of_as_many_seeds_as_asked_for_and_layers_are_kept_once(self):
+        make_results(self.results)
+        for arguments, seeds in [([], [1, 2]), (["--seeds", "1"], [1])]:
+            self.assertEqual(synthetic.run(report, self.results, *arguments)[0], 0)
+            text = (self.results / "report.html").read_text(encoding="utf-8")
+            data = json.loads(text.split('id="data">')[1].split("</script>")[0])
+            scene = data["scenes"][0]
+            images = [image for image in scene["images"] if image["group"] != "reference"]
+            self.assertEqual([[shot["seed"] for shot in image["seeds"]] for image in images], [seeds] * 4)
+            # Emission and direct light are the same everywhere; gathered light is another one in each, and the reference's.
+            self.assertEqual(len(scene["pixels"]), 2 + 4 * len(seeds) + 1)
+            self.assertEqual("images of 1 of the 2 seeds of PPM" in text, len(seeds) == 1)
+        self.assertEqual(synthetic.run(report, self.results, "--seeds", "0")[0], 2)
+
     def test_records_alone_give_a_page(self):
         synthetic.write_csv(self.results, synthetic.rows(lambda *_: 0.01))
         text = self.written_page()
@@ -257,7 +272,7 @@ class Viewer(unittest.TestCase):
 
     def setUp(self):
         self.chromium.open(self.results / "report.html")
-        self.wait_for_legend("A: PPM, pass 64 (RMSE 0.014, 16 s)")
+        self.wait_for_legend("A: PPM, pass 64, seed 1 (RMSE 0.014, 16 s)")
 
     def tearDown(self):
         self.assertEqual(self.chromium.complaints(), [])
@@ -363,6 +378,41 @@ class Viewer(unittest.TestCase):
         self.choose("b", "PPM, pass 1")
         self.assert_shows(self.images["cornell-box", "PPM", 1])
 
+    def layers_of(self, gathered, direct):
+        channels = layered(gathered, direct)
+        return {layer: numpy.stack([channels[f"{layer}.{channel}"] for channel in "RGB"], axis=2)
+                for layer in ["emission", "direct", "gathered"]}
+
+    def choose_layer(self, name):
+        self.press("#layer", "Home")
+        for _ in range(["picture", "emission", "direct", "gathered"].index(name)):
+            self.press("#layer", "ArrowDown")
+        self.assertEqual(self.selected("layer"), name)
+
+    def test_each_layer_can_be_chosen_and_is_that_of_both_images(self):
+        own, judge = self.layers_of(0.3 + 0.1 / 65, 0.25), self.layers_of(0.4, 0.25)
+        for layer, caption in [("direct", " (RMSE 0.014, 16 s)"), ("gathered", " (RMSE 0.014, 16 s)"), ("emission", "")]:
+            self.choose_layer(layer)
+            self.wait_for_legend(f"A: PPM, pass 64, seed 1, {layer}{caption}")
+            self.assert_shows(own[layer])
+            self.chromium.click("#flip")
+            self.wait_for_legend(f"B: reference, {layer}")
+            self.assert_shows(judge[layer])
+            self.chromium.click("#flip")
+        self.choose_layer("picture")
+        self.wait_for_legend("A: PPM, pass 64, seed 1 (RMSE 0.014, 16 s)")
+        self.assert_shows(self.a)
+
+    def test_each_seed_can_be_chosen_and_stays_for_another_pass(self):
+        self.press("#seed-a", "ArrowDown")
+        self.wait_for_legend("A: PPM, pass 64, seed 2 (RMSE 0.017, 16 s)")
+        self.assert_shows(sum(self.layers_of(0.33 + 0.1 / 65, 0.25).values()))
+        self.choose("a", "PPM, pass 1")
+        self.assertEqual(self.selected("seed-a"), "2")
+        self.assert_shows(sum(self.layers_of(0.33 + 0.1 / 2, 0.25).values()))
+        self.assertEqual(self.selected("seed-b"), "–")
+        self.assertTrue(self.chromium.value("document.getElementById('seed-b').disabled"))
+
     def test_a_pixel_that_is_not_a_number_is_magenta_and_an_infinite_one_is_bright(self):
         self.choose("a", "PM, radius, pass 1")
         shown = self.pixels()
@@ -374,7 +424,7 @@ class Viewer(unittest.TestCase):
         self.press("#scene", "End")
         image = self.images[NASTY, "PPM", 64]
         self.assertEqual(self.selected("scene"), NASTY)
-        self.wait_for_legend("A: PPM, pass 64 (RMSE 0.014, 16 s)")
+        self.wait_for_legend("A: PPM, pass 64, seed 1 (RMSE 0.014, 16 s)")
         self.assert_shows(image)
 
     def values(self):
@@ -422,6 +472,20 @@ class Viewer(unittest.TestCase):
         self.addCleanup(self.chromium.call, "Emulation.setEmulatedMedia", media="")
         self.chromium.call("Emulation.setEmulatedMedia", media="print")
         self.assertEqual(self.chromium.value("getComputedStyle(document.getElementById('images')).display"), "none")
+
+    def test_a_layer_that_an_image_does_not_have_is_magenta_and_told(self):
+        with tempfile.TemporaryDirectory() as folder:
+            make_results(Path(folder))
+            for half in "ab":
+                channels = {channel: value for channel, value in layered(0.4, 0.25).items() if len(channel) == 1}
+                write_exr(Path(folder) / f"reference/box/half_{half}.exr", channels)
+            self.assertEqual(synthetic.run(report, folder)[0], 0)
+            self.chromium.open(Path(folder) / "report.html")
+            self.wait_for_legend("A: PPM, pass 64, seed 1 (RMSE 0.014, 16 s)")
+            self.choose_layer("direct")
+            self.chromium.click("#flip")
+            self.wait_for_legend("B: reference: has no layer direct")
+            self.assertEqual(self.pixels()[20, 20].tolist(), [255, 0, 255])
 
     def test_a_page_without_images_works(self):
         with tempfile.TemporaryDirectory() as folder:
