@@ -20,8 +20,8 @@ COMPONENTS = ["total", "emission", "direct", "gathered"]
 
 # What makes a method, in the order in which a label names it. The seed is not among them.
 SETTINGS = ["integrator", "mode", "schedule", "alpha", "k", "radius_rule", "radius_initial", "max_radius", "caustic_k",
-            "caustic_radius", "caustic_max_radius", "kernel",
-            "direct", "direct_samples", "max_depth", "photons_per_pass", "width", "height", "samples_per_pixel",
+            "caustic_radius", "caustic_max_radius", "kernel", "eps",
+            "direct", "direct_samples", "max_depth", "branch_cutoff", "photons_per_pass", "width", "height", "samples_per_pixel",
             "hit_points", "threads"]
 COUNTS = ["seed", "pass", "nonfinite"]
 NUMBERS = ["seconds", "cpu_seconds", "mse", "mse_unbiased", "rmse", "relmse", "smape", "bias", "max_error",
@@ -37,7 +37,7 @@ COLUMNS = ["schema", "experiment", "run", "scene", *SETTINGS[:-1], "seed", "thre
 INTEGRATOR_NAMES = {"photonmapper": "PM", "ppm": "PPM", "path": "path tracing"}
 SETTING_NAMES = {"alpha": "α", "radius_initial": "initial radius", "max_radius": "maximum radius",
                  "caustic_k": "caustic k", "caustic_radius": "caustic radius",
-                 "caustic_max_radius": "maximum caustic radius",
+                 "caustic_max_radius": "maximum caustic radius", "branch_cutoff": "branch cut-off",
                  "photons_per_pass": "photons a pass", "samples_per_pixel": "samples a pixel"}
 MODE_ORDER = ["radius", "nearest"]
 BARE_SETTINGS = ["integrator", "mode", "schedule", "kernel"]    # their values say what they are

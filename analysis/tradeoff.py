@@ -33,8 +33,8 @@ except ImportError as error:
 DEFAULT = "default"
 # A setting that follows from others: it is no knob where one of them has been turned.
 FOLLOWS = {"radius_rule": ["radius_initial"], "caustic_radius": ["radius_initial"], "caustic_max_radius": ["max_radius"],
-           "hit_points": ["samples_per_pixel", "width", "height"],
-           "radius_initial": ["samples_per_pixel", "width", "height"]}
+           "hit_points": ["samples_per_pixel", "width", "height", "branch_cutoff"],
+           "radius_initial": ["samples_per_pixel", "width", "height", "branch_cutoff"]}
 RATIOS = ["error", "time"]
 COLUMNS = ["scene", "point", "knob", "value", "default_value", "seeds", "pass", "rmse", "rmse_error", "seconds", "seconds_error",
            *(f"{name}_ratio{part}" for name in RATIOS for part in ["", "_low", "_high"]), "pareto"]

@@ -94,7 +94,8 @@ void render(const RenderOptions& options) {
     std::set_union(recorded.begin(), recorded.end(), snapshots.begin(), snapshots.end(),
                    std::back_inserter(settings.estimated));
 
-    const HitPoints hit_points = trace_hit_points(scene, options.samples_per_pixel, options.threads);
+    const HitPoints hit_points =
+        trace_hit_points(scene, options.samples_per_pixel, options.threads, settings.method.branch_cutoff);
     const RunIdentity identity{"render",
                                "render",
                                scene.name,

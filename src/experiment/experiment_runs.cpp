@@ -250,14 +250,13 @@ void require_inside(const SceneEntry& entry, const Scene& scene) {
                                                               probe.name, width, height, probe.x, probe.y));
 }
 
-/// What is not finished, in groups that share their photons. Only runs of the same scene, seed, depth and photons do.
+/// What is not finished, in groups that share their photons and hit points.
 std::vector<std::vector<const PreparedRun*>> runs_together(const std::vector<PreparedRun>& runs) {
     std::vector<std::vector<const PreparedRun*>> groups;
     for (const PreparedRun& run : runs) {
         if (run.finished) continue;
         const auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& candidate) {
-            return candidate[0]->run->scene == run.run->scene &&
-                   can_share_photons(candidate[0]->settings, run.settings);
+            return candidate[0]->run->scene == run.run->scene && can_run_together(candidate[0]->settings, run.settings);
         });
         if (group != groups.end())
             group->push_back(&run);
@@ -318,6 +317,7 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
     for (const PreparedRun& ready : prepared.runs) outcome.skipped += ready.finished;
     Progress progress(groups.size() * experiment.passes);
     std::optional<std::size_t> current_scene;
+    double current_cutoff = 0.0;
     std::optional<HitPoints> hit_points;
     std::optional<Reference> reference;
     int reference_depth = -1;
@@ -326,13 +326,14 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
         const SceneEntry& entry = experiment.scenes[first.run->scene];
         const Scene& scene = *prepared.scenes[first.run->scene];
         const int max_depth = first.settings.method.max_depth;
-        if (current_scene != first.run->scene) {
-            hit_points = trace_hit_points(scene, experiment.samples_per_pixel, experiment.threads);
-            reference.reset();
-        }
+        const double cutoff = first.settings.method.branch_cutoff;
+        if (current_scene != first.run->scene) reference.reset();
+        if (current_scene != first.run->scene || current_cutoff != cutoff)
+            hit_points = trace_hit_points(scene, experiment.samples_per_pixel, experiment.threads, cutoff);
         if (entry.reference && (!reference || reference_depth != max_depth))
             reference = load_reference(*entry.reference, subject_of(scene, experiment.samples_per_pixel, max_depth));
         current_scene = first.run->scene;
+        current_cutoff = cutoff;
         reference_depth = max_depth;
 
         const std::string others = groups[i].size() > 1 ? fmt::format(" and {} more", groups[i].size() - 1) : "";
@@ -364,6 +365,7 @@ std::string list_runs(const Experiment& experiment, const PreparedExperiment& pr
     std::string list = fmt::format("{}\n\n", experiment.title);
     std::map<std::string, RunEstimate> estimates;  // by scene and settings: seeds do not change them
     std::optional<std::size_t> current_scene;
+    double current_cutoff = 0.0;
     HitPoints hit_points;
     double seconds = 0.0;
     double mebibytes = 0.0;
@@ -375,9 +377,11 @@ std::string list_runs(const Experiment& experiment, const PreparedExperiment& pr
             continue;
         }
         const Scene& scene = *prepared.scenes[ready.run->scene];
-        if (current_scene != ready.run->scene)
-            hit_points = trace_hit_points(scene, experiment.samples_per_pixel, experiment.threads);
+        const double cutoff = ready.settings.method.branch_cutoff;
+        if (current_scene != ready.run->scene || current_cutoff != cutoff)
+            hit_points = trace_hit_points(scene, experiment.samples_per_pixel, experiment.threads, cutoff);
         current_scene = ready.run->scene;
+        current_cutoff = cutoff;
         const auto [known, is_new] =
             estimates.try_emplace(fmt::format("{} {}", ready.run->scene, settings_json(ready.settings.method).dump()));
         if (is_new) known->second = estimate_run(scene, hit_points, ready.settings);

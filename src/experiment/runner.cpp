@@ -91,12 +91,12 @@ PhotonSettings photons_of(const RunSettings& settings) {
 
 }  // namespace
 
-bool can_share_photons(const RunSettings& a, const RunSettings& b) {
+bool can_run_together(const RunSettings& a, const RunSettings& b) {
     const auto traces = [](const RunSettings& settings) {
         return find_integrator_kind(settings.method.integrator).needs != PhotonNeed::None;
     };
     return traces(a) && traces(b) && photons_of(a) == photons_of(b) && a.passes == b.passes && a.threads == b.threads &&
-           a.estimated == b.estimated;
+           a.estimated == b.estimated && a.method.branch_cutoff == b.method.branch_cutoff;
 }
 
 std::vector<RunState> run_methods(const Scene& scene, const HitPoints& hit_points,
@@ -105,7 +105,7 @@ std::vector<RunState> run_methods(const Scene& scene, const HitPoints& hit_point
     const RunSettings& common = settings.at(0);
     std::vector<RunningMethod> methods;
     for (const RunSettings& one : settings) {
-        assert(settings.size() == 1 || can_share_photons(common, one));
+        assert(settings.size() == 1 || can_run_together(common, one));
         RunningMethod method;
         method.integrator = make_integrator(one.method, {scene, hit_points, one.seed, one.threads});
         method.needs = find_integrator_kind(one.method.integrator).needs;

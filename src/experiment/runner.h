@@ -73,10 +73,11 @@ using PassListener = std::function<void(std::uint64_t pass)>;
 /// Told whenever a method has gathered anew: ppm after every pass, photonmapper at every estimate.
 using GatherListener = std::function<void(std::size_t method, std::uint64_t pass, const Integrator&)>;
 
-/// True when both trace the same photons in the same passes, and are looked at after the same passes.
-bool can_share_photons(const RunSettings& a, const RunSettings& b);
+/// True when both trace the same photons in the same passes, gather at the same hit points, and are looked at after the
+/// same passes.
+bool can_run_together(const RunSettings& a, const RunSettings& b);
 
-/// Runs one method, or several that can share their photons. Calls `on_estimate` for each pass of `estimated`, method
+/// Runs one method, or several that can_run_together(). Calls `on_estimate` for each pass of `estimated`, method
 /// by method, and `on_pass` after every pass; returns the last states. Each method's images are, to the bit, those
 /// that it gives alone.
 std::vector<RunState> run_methods(

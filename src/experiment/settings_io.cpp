@@ -127,10 +127,15 @@ const std::vector<SettingField>& setting_fields() {
                                              "photonmapper, mode nearest: largest radius in the caustic map in scene "
                                              "units, or auto: a quarter of --max-radius"),
         field<&Settings::kernel>("kernel", "--kernel", "ppm, photonmapper: disc, cone, epanechnikov or biweight"),
+        field<&Settings::eps>("eps", "--eps",
+                              "ppm, photonmapper: cells of the tree are searched when their squared distance times "
+                              "1 + eps is within the radius; 0 is exact"),
         field<&Settings::direct>("direct", "--direct", "direct light from shadow rays (sampled) or from photons"),
         field<&Settings::direct_samples>("direct_samples", "--direct-samples", "shadow rays a hit point and pass"),
         field<&Settings::max_depth>("max_depth", "--max-depth",
                                     "edges from camera to light, -1 is unlimited [the scene file's]"),
+        field<&Settings::branch_cutoff>("branch_cutoff", "--branch-cutoff",
+                                        "throughput below which camera paths end at mirrors and glass, 1e-12 to 1"),
         field<&Settings::photons_per_pass>("photons_per_pass", "--photons", "paths emitted a pass"),
     };
     return fields;

@@ -186,17 +186,19 @@ PhotonMap::PhotonMap(std::vector<Photon> photons) {
     bytes_ = photon_bytes + std::max(2 * count * sizeof(SortKey), index_bytes);
 }
 
-void PhotonMap::search(flann::ResultSet<float>& result, const Vector& position) const {
+void PhotonMap::search(flann::ResultSet<float>& result, const Vector& position, double eps) const {
     if (!index_ || !is_finite(position)) return;
-    index_->findNeighbors(result, &position.x, flann::SearchParams());
+    flann::SearchParams parameters;
+    parameters.eps = static_cast<float>(std::min(eps, static_cast<double>(std::numeric_limits<float>::max())));
+    index_->findNeighbors(result, &position.x, parameters);
 }
 
 void PhotonMap::find_nearest(const Vector& position, const Vector& normal, std::size_t k, double max_squared_radius,
-                             std::vector<Neighbour>& neighbours) const {
+                             double eps, std::vector<Neighbour>& neighbours) const {
     neighbours.clear();
     if (k == 0) return;
     NearestVisitor visitor(photons_, position, normal, k, max_squared_radius, neighbours);
-    search(visitor, position);
+    search(visitor, position, eps);
     visitor.finish();
 }
 

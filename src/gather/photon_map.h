@@ -78,6 +78,10 @@ struct Neighbour {
 
 /// All queries are const and may run concurrently; none depends on the thread that asks. A non-finite query point finds
 /// nothing.
+///
+/// FLANN's `eps`, finite and at least 0, is exactness for speed: a cell is entered only when its squared distance times
+/// (1 + eps) is within the squared radius, so photons near the rim can be missed, and of k nearest ones too: farther
+/// ones take their places. 0 is exact.
 class PhotonMap {
 public:
     /// Sorts and indexes the photons; single-threaded, the same result always. Photons whose position is not finite (or
@@ -90,18 +94,18 @@ public:
     template <typename Visit>
     void within(const Vector& position, const Vector& normal, double radius, const Visit& visit) const;
 
-    /// within() for many queries: `visit(std::size_t query, const Photon&, double squared_distance)`. Queries that follow
-    /// each other and lie together are answered by one search, so a coherent order is worth twice the speed; which
-    /// photons are found does not depend on it.
+    /// within() for many queries: `visit(std::size_t query, const Photon&, double squared_distance)`. Queries that
+    /// follow each other and lie together are answered by one search, so a coherent order is worth twice the speed;
+    /// which photons are found does not depend on it. With `eps` above 0 each is searched alone, as eps says below.
     template <typename Visit>
-    void within_each(const std::vector<GatherQuery>& queries, const Visit& visit) const;
+    void within_each(const std::vector<GatherQuery>& queries, const Visit& visit, double eps = 0.0) const;
 
     /// Finds the k nearest accepted photons within `max_radius`, then calls `visit(const Photon&, double
     /// squared_distance, double squared_radius)`, nearest first, for those that carry flux: all of them when fewer than
     /// k were found; else all but the k-th, which sets the radius and carries none (theory.md, section 4).
     template <typename Visit>
     NearestPhotons nearest(const Vector& position, const Vector& normal, std::size_t k, double max_radius,
-                           const Visit& visit) const;
+                           const Visit& visit, double eps = 0.0) const;
 
     std::size_t size() const { return photons_.size(); }    ///< photons that can be found
     std::uint64_t nonfinite() const { return nonfinite_; }  ///< photons left out
@@ -113,11 +117,11 @@ public:
 private:
     using Index = flann::KDTreeSingleIndex<flann::L2_3D<float>>;
 
-    void search(flann::ResultSet<float>& result, const Vector& position) const;
+    void search(flann::ResultSet<float>& result, const Vector& position, double eps) const;
 
     /// Fills `neighbours` with the (at most) k nearest accepted photons, nearest first.
     void find_nearest(const Vector& position, const Vector& normal, std::size_t k, double max_squared_radius,
-                      std::vector<Neighbour>& neighbours) const;
+                      double eps, std::vector<Neighbour>& neighbours) const;
 
     std::vector<Photon> photons_;   // in Morton order; the index points into it
     std::unique_ptr<Index> index_;  // none without photons
@@ -141,19 +145,19 @@ inline float pruning_bound(double squared_radius) {
     return static_cast<float>(std::min(floored * (1.0 + 1e-5), static_cast<double>(std::numeric_limits<float>::max())));
 }
 
-/// Queries that one search answers: at most 16, in a box whose half-diagonal is at most sqrt(8) of the largest radius, and
-/// with radii that differ by a factor of two at most. Wider and narrower ones were slower, early and late.
+/// Queries that one search answers: at most 16, in a box whose half-diagonal is at most sqrt(8) of the largest radius,
+/// and with radii that differ by a factor of two at most. Wider and narrower ones were slower, early and late.
 class QueryCluster {
 public:
     static constexpr std::size_t capacity = 16;
 
-    /// The longest cluster from query `first` on.
-    QueryCluster(const std::vector<GatherQuery>& queries, std::size_t first) : first_(first) {
+    /// The longest cluster from query `first` on, of at most `most` queries (1 to capacity).
+    QueryCluster(const std::vector<GatherQuery>& queries, std::size_t first, std::size_t most) : first_(first) {
         Vector lower = queries[first].position;
         Vector upper = lower;
         double smallest = queries[first].radius;
         double largest = smallest;
-        for (std::size_t i = first; i < queries.size() && count_ < capacity; ++i) {
+        for (std::size_t i = first; i < queries.size() && count_ < most; ++i) {
             const GatherQuery& query = queries[i];
             for (int axis = 0; axis < 3; ++axis) {
                 lower[axis] = std::min(lower[axis], query.position[axis]);
@@ -248,32 +252,33 @@ private:
 };
 
 template <typename Visit>
-void PhotonMap::within_each(const std::vector<GatherQuery>& queries, const Visit& visit) const {
+void PhotonMap::within_each(const std::vector<GatherQuery>& queries, const Visit& visit, double eps) const {
+    // An inexact search of a cluster would take the photons of the queries at its edge: there, each is its own.
+    const std::size_t most = eps > 0.0 ? 1 : QueryCluster::capacity;
     for (std::size_t first = 0; first < queries.size();) {
-        const QueryCluster cluster(queries, first);
+        const QueryCluster cluster(queries, first, most);
         ClusterVisitor<Visit> visitor(photons_, queries, cluster, visit);
-        search(visitor, cluster.centre());
+        search(visitor, cluster.centre(), eps);
         first = cluster.end();
     }
 }
 
 template <typename Visit>
 void PhotonMap::within(const Vector& position, const Vector& normal, double radius, const Visit& visit) const {
-    within_each({{position, normal, radius}}, [&](std::size_t, const Photon& photon, double squared_distance) {
-        visit(photon, squared_distance);
-    });
+    within_each({{position, normal, radius}},
+                [&](std::size_t, const Photon& photon, double squared_distance) { visit(photon, squared_distance); });
 }
 
 template <typename Visit>
 NearestPhotons PhotonMap::nearest(const Vector& position, const Vector& normal, std::size_t k, double max_radius,
-                                  const Visit& visit) const {
+                                  const Visit& visit, double eps) const {
     const double floored = std::max(max_radius, minimum_radius);
     NearestPhotons result{0, floored * floored};
 
     // One buffer a thread, so that queries do not allocate. It is borrowed, not shared: `visit` may ask the map again.
     thread_local std::vector<Neighbour> spare;
     std::vector<Neighbour> neighbours = std::move(spare);
-    find_nearest(position, normal, k, result.squared_radius, neighbours);
+    find_nearest(position, normal, k, result.squared_radius, eps, neighbours);
 
     result.found = neighbours.size();
     std::size_t carrying = neighbours.size();

@@ -67,7 +67,7 @@ private:
 /// range.end), in order. `radius_of(index)` is in the unit box.
 template <typename RadiusOf>
 std::vector<FluxSum> gather_within(const PhotonMap& map, const Scene& scene, const HitPoints& hit_points,
-                                   BlockRange range, Kernel kernel, int max_depth, const RadiusOf& radius_of) {
+                                   BlockRange range, const MethodSettings& settings, const RadiusOf& radius_of) {
     std::vector<GatherQuery> queries;
     std::vector<FluxSum> sums;
     queries.reserve(range.end - range.begin);
@@ -75,12 +75,15 @@ std::vector<FluxSum> gather_within(const PhotonMap& map, const Scene& scene, con
     for (std::size_t i = range.begin; i < range.end; ++i) {
         const HitPoint& point = hit_points.points[i];
         queries.push_back({point.position, point.normal, radius_of(i)});
-        sums.emplace_back(scene, point, max_depth);
+        sums.emplace_back(scene, point, settings.max_depth);
     }
-    map.within_each(queries, [&](std::size_t i, const Photon& photon, double squared_distance) {
-        const double squared_radius = queries[i].radius * queries[i].radius;
-        sums[i].add(photon, kernel_weight(kernel, std::min(1.0, squared_distance / squared_radius)));
-    });
+    map.within_each(
+        queries,
+        [&](std::size_t i, const Photon& photon, double squared_distance) {
+            const double squared_radius = queries[i].radius * queries[i].radius;
+            sums[i].add(photon, kernel_weight(settings.kernel, std::min(1.0, squared_distance / squared_radius)));
+        },
+        settings.eps);
     return sums;
 }
 

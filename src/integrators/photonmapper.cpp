@@ -95,11 +95,11 @@ private:
         std::vector<std::uint64_t> gathered(blocks, 0);
         parallel_for(blocks, context_.threads, [&](std::size_t block) {
             const BlockRange range = block_range(block, points.size(), hit_points_per_block);
-            const std::vector<FluxSum> sums = settings_.mode == GatherMode::Radius
-                                                  ? gather_within(map, context_.scene, context_.hit_points, range,
-                                                                  settings_.kernel, settings_.max_depth,
-                                                                  [&](std::size_t i) { return search.radii[i]; })
-                                                  : gather_nearest(map, search, range);
+            const std::vector<FluxSum> sums =
+                settings_.mode == GatherMode::Radius
+                    ? gather_within(map, context_.scene, context_.hit_points, range, settings_,
+                                    [&](std::size_t i) { return search.radii[i]; })
+                    : gather_nearest(map, search, range);
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 const FluxSum& sum = sums[i - range.begin];
                 radiance_[i] += sum.flux() / (pi * search.radii[i] * search.radii[i]);
@@ -120,7 +120,8 @@ private:
                 point.position, point.normal, search.k, search.max_radius,
                 [&](const Photon& photon, double squared_distance, double squared_radius) {
                     sum.add(photon, kernel_weight(settings_.kernel, std::min(1.0, squared_distance / squared_radius)));
-                });
+                },
+                settings_.eps);
             search.radii[i] = std::sqrt(nearest.squared_radius);
         }
         return sums;

@@ -40,7 +40,7 @@ public:
         parallel_for(blocks, context_.threads, [&](std::size_t block) {
             const BlockRange range = block_range(block, statistics_.size(), hit_points_per_block);
             const std::vector<FluxSum> sums =
-                gather_within(map, context_.scene, context_.hit_points, range, settings_.kernel, settings_.max_depth,
+                gather_within(map, context_.scene, context_.hit_points, range, settings_,
                               [&](std::size_t i) { return std::sqrt(statistics_[i].squared_radius); });
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 const FluxSum& sum = sums[i - range.begin];

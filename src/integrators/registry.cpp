@@ -1,6 +1,9 @@
 #include "integrators/registry.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "integrators/path.h"
 #include "integrators/photonmapper.h"
@@ -10,15 +13,16 @@ namespace photonlab {
 
 const std::vector<IntegratorKind>& integrator_kinds() {
     static const std::vector<IntegratorKind> kinds{
-        {"path", PhotonNeed::None, {"max_depth"}, make_path},
+        {"path", PhotonNeed::None, {"max_depth", "branch_cutoff"}, make_path},
         {"photonmapper",
          PhotonNeed::AllPassesMaps,
-         {"mode", "k", "radius", "max_radius", "caustic_k", "caustic_radius", "caustic_max_radius", "kernel", "direct",
-          "direct_samples", "max_depth", "photons_per_pass"},
+         {"mode", "k", "radius", "max_radius", "caustic_k", "caustic_radius", "caustic_max_radius", "kernel", "eps",
+          "direct", "direct_samples", "max_depth", "branch_cutoff", "photons_per_pass"},
          make_photonmapper},
         {"ppm",
          PhotonNeed::PassMap,
-         {"schedule", "alpha", "radius", "kernel", "direct", "direct_samples", "max_depth", "photons_per_pass"},
+         {"schedule", "alpha", "radius", "kernel", "eps", "direct", "direct_samples", "max_depth", "branch_cutoff",
+          "photons_per_pass"},
          make_ppm},
     };
     return kinds;
@@ -66,6 +70,10 @@ void require_valid(const MethodSettings& settings) {
             "direct_samples: expected at least 1, got " + std::to_string(settings.direct_samples));
     require(settings.max_depth == -1 || settings.max_depth >= 1,
             "max_depth: expected -1 (unlimited) or at least 1, got " + std::to_string(settings.max_depth));
+    require(std::isfinite(settings.eps) && settings.eps >= 0.0,
+            fmt::format("eps: expected at least 0, which is exact, got {}", settings.eps));
+    require(settings.branch_cutoff >= 1e-12 && settings.branch_cutoff <= 1.0,
+            fmt::format("branch_cutoff: expected a throughput from 1e-12 to 1, got {}", settings.branch_cutoff));
     require(settings.photons_per_pass >= 1, "photons_per_pass: expected at least 1");
 }
 

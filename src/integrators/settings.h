@@ -12,6 +12,7 @@
 #include "core/names.h"
 #include "gather/kernel.h"
 #include "gather/radius_schedule.h"
+#include "transport/hit_points.h"
 
 namespace photonlab {
 
@@ -56,10 +57,13 @@ struct MethodSettings {
     std::optional<double> caustic_max_radius = std::nullopt;  ///< photonmapper, nearest: of the caustic map, scene
                                                               ///< units, > 0; empty: a quarter of max_radius
     Kernel kernel = Kernel::Disc;                             ///< ppm, photonmapper
-    DirectMode direct = DirectMode::Sampled;                  ///< ppm, photonmapper
-    int direct_samples = 1;                                   ///< shadow rays a hit point and pass, >= 1
-    int max_depth = -1;                                       ///< edges from camera to light; -1 is unlimited
-    std::uint64_t photons_per_pass = 100'000;                 ///< paths emitted a pass
+    double eps = 0.0;  ///< ppm, photonmapper: inexactness of the search for photons, >= 0; see PhotonMap
+    DirectMode direct = DirectMode::Sampled;       ///< ppm, photonmapper
+    int direct_samples = 1;                        ///< shadow rays a hit point and pass, >= 1
+    int max_depth = -1;                            ///< edges from camera to light; -1 is unlimited
+    double branch_cutoff = default_branch_cutoff;  ///< throughput below which camera paths end at mirrors and glass,
+                                                   ///< 1e-12 to 1; references are made with the default
+    std::uint64_t photons_per_pass = 100'000;      ///< paths emitted a pass
 };
 
 }  // namespace photonlab

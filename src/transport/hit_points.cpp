@@ -44,13 +44,14 @@ int grid_size(int samples_per_pixel) {
 
 }  // namespace
 
-HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int threads) {
+HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int threads, double branch_cutoff) {
     constexpr std::size_t material_limit = std::size_t{1} << 16;  // HitPoint::material
     if (scene.materials.size() > material_limit)
         throw InputError("expected at most " + std::to_string(material_limit) + " materials in a scene, got " +
                          std::to_string(scene.materials.size()));
     const Camera& camera = scene.camera;
     const int grid = grid_size(samples_per_pixel);
+    const float smallest_weight = static_cast<float>(branch_cutoff);
     const float share = 1.0f / static_cast<float>(samples_per_pixel);
     const int tiles_across = (camera.width + tile_size - 1) / tile_size;
     const int tiles_down = (camera.height + tile_size - 1) / tile_size;
@@ -94,7 +95,7 @@ HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int thread
             const Vector direction = surface->frame.to_world(way.incoming);
             if (!sides_agree(*surface, direction)) continue;  // absorbed, as for every path here
             const Color throughput = branch.throughput * way.weight;
-            if (max_channel(throughput) < smallest_branch_weight || branch.edges == edge_cap)
+            if (max_channel(throughput) < smallest_weight || branch.edges == edge_cap)
                 tile.weight_cut += mean_channel(ColorD(throughput)) * static_cast<double>(share);
             else
                 next.push_back(

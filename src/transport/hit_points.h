@@ -42,8 +42,8 @@ struct HitPoints {
     int width = 0;
     int height = 0;
     int samples_per_pixel = 1;
-    std::vector<HitPoint> points;  ///< tile by tile and along a Morton curve in each, so that neighbours in the list are
-                                   ///< neighbours in space
+    std::vector<HitPoint> points;  ///< tile by tile and along a Morton curve in each, so that neighbours in the list
+                                   ///< are neighbours in space
     std::vector<float>
         footprints;  ///< one a point, unit box: unfolded distance from the camera times the pixel's angle
     std::vector<SeenEmission> emission;
@@ -51,11 +51,14 @@ struct HitPoints {
     std::uint64_t nonfinite = 0;  ///< camera paths that met a non-finite value
 };
 
-/// Traces the deterministic grid of sample positions: `samples_per_pixel` is a perfect square, 1 is the pixel's centre.
-HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int threads);
+/// Where camera branches end unless a method says otherwise, and always those of a reference.
+inline constexpr double default_branch_cutoff = 1e-4;
 
-/// Specular branches below this throughput (strongest channel) end, and so do those of 10,000 edges.
-inline constexpr float smallest_branch_weight = 1e-4f;
+/// Traces the deterministic grid of sample positions: `samples_per_pixel` is a perfect square, 1 is the pixel's centre.
+/// Specular branches whose throughput (strongest channel) is below `branch_cutoff`, above 0, end, and so do those of
+/// 10,000 edges.
+HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int threads,
+                           double branch_cutoff = default_branch_cutoff);
 
 inline std::size_t pixel_count(const HitPoints& hit_points) {
     return static_cast<std::size_t>(hit_points.width) * static_cast<std::size_t>(hit_points.height);

@@ -101,13 +101,13 @@ class Reading(Folder):
         synthetic.write_csv(self.results, synthetic.rows(constant(1.0)))
         file = self.results / "iterations.csv"
         file.write_text(file.read_text().rstrip()[:-30])
-        self.refused("iterations.csv:129: has ", " fields; the header has 52")
+        self.refused("iterations.csv:129: has ", " fields; the header has 54")
 
     def test_refuses_a_row_with_too_many_fields(self):
         synthetic.write_csv(self.results, synthetic.rows(constant(1.0)))
         with open(self.results / "iterations.csv", "a") as file:
             file.write("," * 60 + "\n")
-        self.refused("iterations.csv:130: has 61 fields; the header has 52")
+        self.refused("iterations.csv:130: has 61 fields; the header has 54")
 
     def test_refuses_a_repeated_row(self):
         made = synthetic.rows(constant(1.0))
@@ -152,12 +152,12 @@ class Methods(Folder):
 
     def test_a_setting_that_the_contract_does_not_know_tells_methods_apart(self):
         made = []
-        for eps in ["0", "0.5"]:
+        for drift in ["0", "0.5"]:
             for row in synthetic.rows(constant(1.0), seeds=[1, 2], passes=[1]):
-                made.append({**row, "run": f"box_eps-{eps}_seed-{row['seed']}", "eps": eps, "measured": str(len(made))})
-        rows = self.read(made, columns=[*records.COLUMNS, "eps", "measured"])
-        self.assertEqual(records.settings_of(rows), [*records.SETTINGS, "eps"])
-        self.assertEqual(records.methods_in_order(rows), ["PPM, eps = 0", "PPM, eps = 0.5"])
+                made.append({**row, "run": f"box_drift-{drift}_seed-{row['seed']}", "drift": drift, "measured": str(len(made))})
+        rows = self.read(made, columns=[*records.COLUMNS, "drift", "measured"])
+        self.assertEqual(records.settings_of(rows), [*records.SETTINGS, "drift"])
+        self.assertEqual(records.methods_in_order(rows), ["PPM, drift = 0", "PPM, drift = 0.5"])
 
     def test_radii_that_only_differ_from_scene_to_scene_are_not_named(self):
         self.assertEqual(self.labels({}, {"scene": "other", "radius_initial": "3"}), ["PPM"])

@@ -28,13 +28,12 @@ class Tradeoff(unittest.TestCase):
         """`methods` by name: (settings, MSE by seed, seconds by seed) after pass 8; half of each after pass 4."""
         made = []
         for name, (settings, mse, seconds) in methods.items():
-            known = {key: value for key, value in settings.items() if key in records.COLUMNS}
             for row in synthetic.rows(lambda seed, number, _: mse(seed) * 8 / max(1, number), seeds=seeds, passes=[0, 4, 8],
-                                      **known):
-                row.update({"eps": "0", **settings, "run": f"cornell-box_{name}_seed-{row['seed']}",
+                                      **settings):
+                row.update({"run": f"cornell-box_{name}_seed-{row['seed']}",
                             "seconds": repr(seconds(int(row["seed"])) * int(row["pass"]) / 8)})
                 made.append(row)
-        synthetic.write_csv(self.results, made, columns=[*records.COLUMNS, "eps"])
+        synthetic.write_csv(self.results, made)
 
     def tables(self):
         code, output, errors = synthetic.run(tradeoff, self.results)

@@ -115,6 +115,8 @@ TEST_F(ExperimentFile, RefusesBadInputWithItsPlace) {
         {least + ppm + "radius = -1\n", ":5: radius: expected \"auto\" or a length above 0"},
         {least + ppm + "radius = true\n", ":5: radius: expected \"auto\" or a length in scene units, got true"},
         {least + ppm + "kernel = \"box\"\n", ":5: unknown kernel \"box\"; known here: disc"},
+        {least + ppm + "eps = -0.5\n", ":5: eps: expected at least 0"},
+        {least + ppm + "branch_cutoff = 0\n", ":5: branch_cutoff: expected a throughput from 1e-12 to 1, got 0"},
         {least + ppm + "direct_samples = 0\n", ":5: direct_samples: expected at least 1"},
         {least + ppm + "photons_per_pass = 0\n", ":5: photons_per_pass: expected at least 1"},
         {least + ppm + "max_depth = 0\n", ":5: max_depth: expected -1"},

@@ -222,6 +222,28 @@ TEST_F(ExperimentRuns, RunsThatShareTheirPhotonsRecordWhatTheyWouldAlone) {
     EXPECT_EQ(json.at("runs_together"), 1);
 }
 
+// Where camera branches end decides which hit points there are, so runs that differ in it do not share them.
+TEST_F(ExperimentRuns, EachBranchCutoffHasItsOwnHitPoints) {
+    std::string mirror_scene = two_walls_scene;
+    const std::string grey = "<ref id=\"grey\"/>";
+    mirror_scene.replace(mirror_scene.rfind(grey), grey.size(),
+                         "<bsdf type=\"conductor\"><string name=\"material\" value=\"Cu\"/></bsdf>");
+    const Scene scene = build_scene(load_scene_file(folder_.write("mirror/scene.xml", mirror_scene)));
+    folder_.write("cut.toml",
+                  "scenes = [\"mirror/scene.xml\"]\npasses = 2\nphotons_per_pass = 400\n"
+                  "[[method]]\nintegrator = \"ppm\"\nbranch_cutoff = [1e-4, 0.99, 1e-5]\n");
+    const Experiment experiment = read_experiment(folder_ / "cut.toml");
+    run_experiment(experiment, prepare_experiment(experiment, results()), results());
+    const auto points = [&](double cutoff) { return trace_hit_points(scene, 1, 1, cutoff).points.size(); };
+    ASSERT_LT(points(0.99), points(1e-4));
+    std::size_t rows = 0;
+    for (const Row& row : read_csv(results() / "iterations.csv")) {
+        EXPECT_EQ(row.at("hit_points"), std::to_string(points(std::stod(row.at("branch_cutoff")))));
+        ++rows;
+    }
+    EXPECT_EQ(rows, 3u * 3u * 4u);
+}
+
 TEST_F(ExperimentRuns, RecordsProbesAfterEveryPass) {
     folder_.write("probed.toml",
                   "passes = 3\nrecord = [2]\nphotons_per_pass = 400\n"

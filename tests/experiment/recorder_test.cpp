@@ -29,8 +29,9 @@ TEST(Records, ColumnsAreThoseOfTheContract) {
     EXPECT_EQ(
         csv_header(),
         "schema,experiment,run,scene,integrator,mode,schedule,alpha,k,radius_rule,radius_initial,max_radius,caustic_k,"
-        "caustic_radius,caustic_max_radius,kernel,"
-        "direct,direct_samples,max_depth,photons_per_pass,width,height,samples_per_pixel,hit_points,seed,threads,"
+        "caustic_radius,caustic_max_radius,kernel,eps,"
+        "direct,direct_samples,max_depth,branch_cutoff,photons_per_pass,width,height,samples_per_pixel,hit_points,seed,"
+        "threads,"
         "pass,component,"
         "paths_emitted,photons_stored,photons_gathered,seconds,cpu_seconds,seconds_trace,seconds_build,seconds_gather,"
         "seconds_direct,map_bytes,hit_point_bytes,peak_rss_mib,radius_min,radius_mean,radius_max,"
@@ -53,6 +54,7 @@ TEST(Records, WhatDoesNotApplyIsEmpty) {
                                "caustic_radius",
                                "caustic_max_radius",
                                "kernel",
+                               "eps",
                                "direct",
                                "direct_samples",
                                "photons_per_pass",
@@ -66,6 +68,7 @@ TEST(Records, WhatDoesNotApplyIsEmpty) {
                                "reference_floor"})
         EXPECT_EQ(cell(path, column), "") << column;
     EXPECT_EQ(cell(path, "max_depth"), "-1");
+    EXPECT_EQ(cell(path, "branch_cutoff"), "0.0001");
     EXPECT_EQ(cell(path, "nonfinite"), "0");
 
     identity.settings.method.integrator = "photonmapper";

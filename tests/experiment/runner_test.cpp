@@ -138,22 +138,24 @@ TEST_F(Runner, MethodsThatShareTheirPhotonsAreAllChargedForThem) {
     EXPECT_GT(states[2].times.of(Stage::Build), 0.0);
 }
 
-TEST_F(Runner, OnlyMethodsWithTheSamePhotonsAndPassesCanShareThem) {
+TEST_F(Runner, OnlyMethodsWithTheSamePhotonsHitPointsAndPassesCanRunTogether) {
     const RunSettings settings{MethodSettings{}, 3, 6, 1, {6}};
-    const auto can_share = [&](const std::function<void(RunSettings&)>& change) {
+    const auto can_together = [&](const std::function<void(RunSettings&)>& change) {
         RunSettings other = settings;
         change(other);
-        return can_share_photons(settings, other);
+        return can_run_together(settings, other);
     };
-    EXPECT_TRUE(can_share([](RunSettings& other) { other.method.alpha = 0.3; }));
-    EXPECT_TRUE(can_share([](RunSettings& other) { other.method.integrator = "photonmapper"; }));
-    EXPECT_FALSE(can_share([](RunSettings& other) { other.method.integrator = "path"; }));
-    EXPECT_FALSE(can_share([](RunSettings& other) { other.method.photons_per_pass = 5; }));
-    EXPECT_FALSE(can_share([](RunSettings& other) { other.method.max_depth = 3; }));
-    EXPECT_FALSE(can_share([](RunSettings& other) { other.method.direct = DirectMode::Photons; }));
-    EXPECT_FALSE(can_share([](RunSettings& other) { other.seed = 4; }));
-    EXPECT_FALSE(can_share([](RunSettings& other) { other.passes = 7; }));
-    EXPECT_FALSE(can_share([](RunSettings& other) { other.estimated = {1, 6}; }));
+    EXPECT_TRUE(can_together([](RunSettings& other) { other.method.alpha = 0.3; }));
+    EXPECT_TRUE(can_together([](RunSettings& other) { other.method.eps = 1.0; }));
+    EXPECT_TRUE(can_together([](RunSettings& other) { other.method.integrator = "photonmapper"; }));
+    EXPECT_FALSE(can_together([](RunSettings& other) { other.method.integrator = "path"; }));
+    EXPECT_FALSE(can_together([](RunSettings& other) { other.method.photons_per_pass = 5; }));
+    EXPECT_FALSE(can_together([](RunSettings& other) { other.method.max_depth = 3; }));
+    EXPECT_FALSE(can_together([](RunSettings& other) { other.method.direct = DirectMode::Photons; }));
+    EXPECT_FALSE(can_together([](RunSettings& other) { other.method.branch_cutoff = 0.01; }));
+    EXPECT_FALSE(can_together([](RunSettings& other) { other.seed = 4; }));
+    EXPECT_FALSE(can_together([](RunSettings& other) { other.passes = 7; }));
+    EXPECT_FALSE(can_together([](RunSettings& other) { other.estimated = {1, 6}; }));
 }
 
 TEST_F(Runner, TellsWhatIsGatheredAtAHitPoint) {

@@ -23,9 +23,11 @@ TEST(SettingsTable, ReadsBackWhatItWrites) {
     written.radius = 0.1;
     written.max_radius = 1e-30;
     written.kernel = Kernel::Biweight;
+    written.eps = 0.25;
     written.direct = DirectMode::Photons;
     written.direct_samples = 3;
     written.max_depth = 9;
+    written.branch_cutoff = 3e-3;
     written.photons_per_pass = 123'456'789'012;
     MethodSettings read;
     for (const SettingField& field : setting_fields())

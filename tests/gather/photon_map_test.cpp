@@ -222,6 +222,47 @@ TEST(PhotonMapWithin, AnswersNothingForANonFiniteQuery) {
     EXPECT_EQ(count_within(map, Vector(0.0f), up, std::numeric_limits<double>::quiet_NaN()), 0u);
 }
 
+// A cell is left out only when all of it lies beyond r / sqrt(1 + eps): what is nearer is always found.
+TEST(PhotonMapWithin, WithEpsMissesPhotonsNearTheRimAlone) {
+    std::size_t missed = 0;
+    for (const PhotonSet& set : photon_sets()) {
+        const PhotonMap map(set.photons);
+        for (const Vector& position : query_points(set))
+            for (const double radius : {1e-4, 0.1, 0.3, 1.0})
+                for (const double eps : {0.5, 4.0, 1e300}) {
+                    std::vector<std::uint32_t> found;
+                    map.within_each(
+                        {{position, up, radius}},
+                        [&](std::size_t, const Photon& photon, double) { found.push_back(number_of(photon)); }, eps);
+                    std::sort(found.begin(), found.end());
+                    const auto all = numbers_by_brute_force(set.photons, position, up, radius);
+                    const auto certain =
+                        numbers_by_brute_force(set.photons, position, up, radius / std::sqrt(1.0 + eps) * (1.0 - 1e-6));
+                    ASSERT_TRUE(std::includes(all.begin(), all.end(), found.begin(), found.end())) << set.name;
+                    ASSERT_TRUE(std::includes(found.begin(), found.end(), certain.begin(), certain.end())) << set.name;
+                    missed += all.size() - found.size();
+                }
+    }
+    EXPECT_GT(missed, 10'000u);
+}
+
+TEST(PhotonMapWithin, WithEpsAQueryAmongOthersFindsWhatItFindsAlone) {
+    const PhotonSet set =
+        photon_set("flat", 3000, [](RandomStream& random, std::size_t) { return random_point(random, 1.0f); });
+    const PhotonMap map(set.photons);
+    std::vector<GatherQuery> queries;
+    for (int i = 0; i < 50; ++i) queries.push_back({Vector(0.004f * static_cast<float>(i), 0.0f, 0.0f), up, 0.2});
+    const auto found = [&](const std::vector<GatherQuery>& asked) {
+        std::vector<std::vector<std::uint32_t>> numbers(asked.size());
+        map.within_each(
+            asked,
+            [&](std::size_t query, const Photon& photon, double) { numbers[query].push_back(number_of(photon)); }, 1.0);
+        return numbers;
+    };
+    const auto together = found(queries);
+    for (std::size_t i = 0; i < queries.size(); ++i) EXPECT_EQ(together[i], found({queries[i]}).front()) << i;
+}
+
 // ---------------------------------------------------------------------------------------------------------------------
 
 TEST(PhotonMapAcceptance, PhotonsArrivingFromBehindAreRejected) {
@@ -299,6 +340,37 @@ TEST(PhotonMapNearest, FindsExactlyWhatBruteForceFinds) {
             }
     }
     EXPECT_GT(compared, 100'000u);
+}
+
+// The i-th that is found is no farther than the i-th there is, but for a factor of 1 + eps in the squared distance.
+TEST(PhotonMapNearest, WithEpsEachIsAtMostThatMuchFarther) {
+    std::size_t farther = 0;
+    for (const PhotonSet& set : photon_sets()) {
+        const PhotonMap map(set.photons);
+        for (const Vector& position : query_points(set))
+            for (const std::size_t k : {std::size_t{5}, std::size_t{50}, std::size_t{300}})
+                for (const double eps : {0.5, 4.0}) {
+                    const auto distances = [&](double inexactness) {
+                        std::vector<double> squared;
+                        const NearestPhotons answer = map.nearest(
+                            position, up, k, 10.0,
+                            [&](const Photon&, double d_squared, double) { squared.push_back(d_squared); },
+                            inexactness);
+                        squared.push_back(answer.squared_radius);
+                        return squared;
+                    };
+                    const std::vector<double> exact = distances(0.0);
+                    const std::vector<double> found = distances(eps);
+                    if (exact.size() < k) continue;  // not so many there: the radius is the maximum
+                    ASSERT_EQ(found.size(), k);
+                    for (std::size_t i = 0; i < k; ++i) {
+                        ASSERT_GE(found[i], exact[i]) << set.name;
+                        ASSERT_LE(found[i], exact[i] * (1.0 + eps) * (1.0 + 1e-5)) << set.name;
+                        farther += found[i] > exact[i];
+                    }
+                }
+    }
+    EXPECT_GT(farther, 1'000u);
 }
 
 TEST(PhotonMapNearest, RejectedPhotonsDoNotCountAmongTheK) {
@@ -464,8 +536,10 @@ TEST(PhotonMap, TwoMapsOfTheSamePhotonsVisitInTheSameOrder) {
     const PhotonMap second(set.photons);
     std::vector<std::uint32_t> first_order;
     std::vector<std::uint32_t> second_order;
-    first.within(Vector(0.0f), up, 0.3, [&](const Photon& photon, double) { first_order.push_back(number_of(photon)); });
-    second.within(Vector(0.0f), up, 0.3, [&](const Photon& photon, double) { second_order.push_back(number_of(photon)); });
+    first.within(Vector(0.0f), up, 0.3,
+                 [&](const Photon& photon, double) { first_order.push_back(number_of(photon)); });
+    second.within(Vector(0.0f), up, 0.3,
+                  [&](const Photon& photon, double) { second_order.push_back(number_of(photon)); });
     EXPECT_EQ(first_order, second_order);
     EXPECT_GT(first_order.size(), 100u);
 }
@@ -491,8 +565,8 @@ TEST(PhotonMap, ManyQueriesAtOnceFindWhatEachFindsAlone) {
         });
         for (std::size_t i = 0; i < queries.size(); ++i) {
             std::sort(found[i].begin(), found[i].end());
-            ASSERT_EQ(found[i], numbers_by_brute_force(set.photons, queries[i].position, queries[i].normal,
-                                                       queries[i].radius))
+            ASSERT_EQ(found[i],
+                      numbers_by_brute_force(set.photons, queries[i].position, queries[i].normal, queries[i].radius))
                 << set.name << ", query " << i;
         }
     }

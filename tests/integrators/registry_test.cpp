@@ -34,6 +34,10 @@ TEST(Registry, RefusesValuesOutOfRangeAndSaysWhatItExpects) {
     for (const int k : {1, 0, -3}) EXPECT_NE(refusal({.k = k}).find("k:"), std::string::npos);
     for (const int depth : {0, -2}) EXPECT_NE(refusal({.max_depth = depth}).find("max_depth"), std::string::npos);
     EXPECT_NE(refusal({.direct_samples = 0}).find("direct_samples"), std::string::npos);
+    for (const double eps : {-1e-9, nan, too_large})
+        EXPECT_NE(refusal({.eps = eps}).find("eps: expected at least 0"), std::string::npos);
+    for (const double cutoff : {0.0, -1.0, 1e-13, 1.001, nan})
+        EXPECT_NE(refusal({.branch_cutoff = cutoff}).find("branch_cutoff: expected a throughput"), std::string::npos);
     EXPECT_NE(refusal({.photons_per_pass = 0}).find("photons_per_pass"), std::string::npos);
 }
 
@@ -55,7 +59,26 @@ TEST(Registry, KnowsWhichSettingsAMethodUses) {
     EXPECT_TRUE(uses_setting({}, "direct_samples"));
     EXPECT_FALSE(uses_setting({.direct = DirectMode::Photons}, "direct_samples"));
     EXPECT_FALSE(uses_setting({.integrator = "path"}, "photons_per_pass"));
+    EXPECT_FALSE(uses_setting({.integrator = "path"}, "eps"));
+    EXPECT_TRUE(uses_setting(nearest, "eps"));
+    EXPECT_TRUE(uses_setting({.integrator = "path"}, "branch_cutoff"));
     EXPECT_TRUE(uses_setting({.integrator = "path"}, "max_depth"));
+}
+
+// A search that misses photons finds fewer of them within a radius, and the k nearest in a larger one.
+TEST(Registry, EpsIsThatOfEverySearch) {
+    const Scene scene = build_scene(room(16, 16));
+    const auto report = [&](MethodSettings method, double eps) {
+        method.eps = eps;
+        method.photons_per_pass = 4000;
+        return render(scene, method, {}).report;
+    };
+    for (const char* integrator : {"ppm", "photonmapper"}) {
+        const MethodSettings by_radius{.integrator = integrator, .radius = 0.4};
+        EXPECT_LT(report(by_radius, 4.0).photons_gathered, report(by_radius, 0.0).photons_gathered) << integrator;
+    }
+    const MethodSettings nearest{.integrator = "photonmapper", .mode = GatherMode::Nearest, .max_radius = 10.0};
+    EXPECT_GT(*report(nearest, 4.0).radius_mean, *report(nearest, 0.0).radius_mean);
 }
 
 }  // namespace

@@ -456,6 +456,13 @@ TEST(CapturedLight, InAGreyMirrorBoxIsCutBelowTheSmallestWeight) {
     EXPECT_NEAR(hit_points.weight_cut, std::pow(0.5, 14) * 2.0 / 3.0, 1e-9);
 }
 
+TEST(CapturedLight, IsCutWhereItIsAskedTo) {
+    const Scene scene = build_scene(mirror_box(Color(0.5f)));
+    for (const int reflections : {1, 3, 20})  // the last that goes on carries just the cut-off
+        EXPECT_NEAR(trace_hit_points(scene, 1, 1, std::pow(0.5, reflections)).weight_cut,
+                    std::pow(0.5, reflections + 1), 1e-12);
+}
+
 TEST(CapturedLight, OfTheCameraInsideABallOfGlassEnds) {
     // Off the centre by more than R / n, so that directions across the radius are reflected totally for ever.
     SceneDescription description;
