@@ -19,10 +19,10 @@ SCHEMA = "1"
 COMPONENTS = ["total", "emission", "direct", "gathered"]
 
 # What makes a method, in the order in which a label names it. The seed is not among them.
-SETTINGS = ["integrator", "mode", "schedule", "alpha", "k", "radius_rule", "radius_initial", "max_radius", "caustic_k",
-            "caustic_radius", "caustic_max_radius", "kernel", "eps",
-            "direct", "direct_samples", "max_depth", "branch_cutoff", "photons_per_pass", "width", "height", "samples_per_pixel",
-            "hit_points", "threads"]
+SETTINGS = ["integrator", "mode", "schedule", "alpha", "k", "radius_rule", "footprints", "radius_initial",
+            "max_radius", "caustic_k", "caustic_radius", "caustic_max_radius", "kernel", "eps", "direct",
+            "direct_samples", "max_depth", "branch_cutoff", "photons_per_pass", "width", "height",
+            "samples_per_pixel", "hit_points", "threads"]
 COUNTS = ["seed", "pass", "nonfinite"]
 NUMBERS = ["seconds", "cpu_seconds", "mse", "mse_unbiased", "rmse", "relmse", "smape", "bias", "max_error",
            "reference_floor"]
@@ -38,6 +38,7 @@ INTEGRATOR_NAMES = {"photonmapper": "PM", "ppm": "PPM", "path": "path tracing"}
 SETTING_NAMES = {"alpha": "α", "radius_initial": "initial radius", "max_radius": "maximum radius",
                  "caustic_k": "caustic k", "caustic_radius": "caustic radius",
                  "caustic_max_radius": "maximum caustic radius", "branch_cutoff": "branch cut-off",
+                 "footprints": "radius in footprints",
                  "photons_per_pass": "photons a pass", "samples_per_pixel": "samples a pixel"}
 MODE_ORDER = ["radius", "nearest"]
 BARE_SETTINGS = ["integrator", "mode", "schedule", "kernel"]    # their values say what they are
@@ -169,6 +170,11 @@ def method_labels(records):
     # A sweep over given radii is named by the radii; the rule would say the same again.
     if "radius_initial" in named or "max_radius" in named:
         named.discard("radius_rule")
+    # Neither do the radii and hit points that follow from settings.
+    if "footprints" in named and (methods["radius_rule"] != "given").all():
+        named.discard("radius_initial")
+    if "branch_cutoff" in named:
+        named.discard("hit_points")
     if ((methods["caustic_radius"] == "") | (methods["caustic_radius"] == methods["radius_initial"])).all():
         named.discard("caustic_radius")
     first = labels(named)

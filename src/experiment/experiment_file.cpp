@@ -34,6 +34,7 @@ using Axes = std::map<std::string, Axis, std::less<>>;
 struct Method {
     std::optional<std::string> name;
     Axes axes;
+    PassPlan plan;
     std::string place;
 };
 
@@ -151,39 +152,53 @@ private:
         return result;
     }
 
-    void read_passes(const toml::table& root) {
-        const toml::node* node = root.get("passes");
-        if (!node) throw InputError(whole_file(), "passes is missing: how many passes each run has");
-        const std::uint64_t written = static_cast<std::uint64_t>(integer(*node, "passes", 1, most_passes));
-        experiment_.passes = smoke_ ? std::min(written, smoke_->passes) : written;
+    std::uint64_t passes(const toml::node& node) const {
+        return static_cast<std::uint64_t>(integer(node, "passes", 1, most_passes));
+    }
+
+    /// The plan of `written` passes, smoke limits applied. Of a list in the file, what lies beyond them is left out.
+    PassPlan plan_of(const toml::table& root, std::uint64_t written) const {
+        PassPlan plan{smoke_ ? std::min(written, smoke_->passes) : written, {}, {}};
         const auto up_to_last = [&](std::vector<std::uint64_t> list) {
-            std::erase_if(list, [&](std::uint64_t pass) { return pass > experiment_.passes; });
-            list.push_back(experiment_.passes);
+            std::erase_if(list, [&](std::uint64_t pass) { return pass > plan.passes; });
+            list.push_back(plan.passes);
             sort_unique(list);
             return list;
         };
 
         const toml::node* record = root.get("record");
-        std::vector<std::uint64_t> recorded = powers_of_two(experiment_.passes);
+        std::vector<std::uint64_t> recorded = powers_of_two(plan.passes);
         if (record && record->is_string()) {
             const std::string rule = string(*record, "record");
             if (rule == "all") {
-                for (std::uint64_t pass = 1; pass <= experiment_.passes; ++pass) recorded.push_back(pass);
+                for (std::uint64_t pass = 1; pass <= plan.passes; ++pass) recorded.push_back(pass);
             } else if (rule != "powers-of-two") {
                 throw InputError(
                     place(*record),
                     fmt::format("unknown record \"{}\"; known here: all, powers-of-two, a list of passes", rule));
             }
         } else if (record) {
-            recorded = integers(*record, "record", 0, static_cast<std::int64_t>(written));
+            recorded = integers(*record, "record", 0, static_cast<std::int64_t>(most_written_passes_));
         }
         recorded.push_back(0);
-        experiment_.recorded = up_to_last(std::move(recorded));
+        plan.recorded = up_to_last(std::move(recorded));
 
         const toml::node* snapshots = root.get("snapshots");
         if (snapshots && !(snapshots->is_array() && snapshots->as_array()->empty()))
-            experiment_.snapshots = integers(*snapshots, "snapshots", 0, static_cast<std::int64_t>(written));
-        experiment_.snapshots = up_to_last(std::move(experiment_.snapshots));
+            plan.snapshots = integers(*snapshots, "snapshots", 0, static_cast<std::int64_t>(most_written_passes_));
+        plan.snapshots = up_to_last(std::move(plan.snapshots));
+        return plan;
+    }
+
+    /// The experiment's passes, and the most that it or a method of its own has.
+    void read_passes(const toml::table& root) {
+        const toml::node* node = root.get("passes");
+        if (!node) throw InputError(whole_file(), "passes is missing: how many passes each run has");
+        written_passes_ = most_written_passes_ = passes(*node);
+        if (const toml::array* methods = root["method"].as_array())
+            for (const toml::node& method : *methods)
+                if (const toml::node* own = method.is_table() ? method.as_table()->get("passes") : nullptr)
+                    most_written_passes_ = std::max(most_written_passes_, passes(*own));
     }
 
     void read_sampling(const toml::table& root) {
@@ -303,12 +318,14 @@ private:
         std::vector<Method> methods;
         for (const toml::node& node : *tables) {
             const toml::table& table = *node.as_table();
-            std::vector<std::string_view> known{"name"};
+            std::vector<std::string_view> known{"name", "passes"};
             for (const SettingField& field : setting_fields()) known.push_back(field.name);
             require_known(table, known);
             Method method;
             method.place = place(node);
             if (const toml::node* name = table.get("name")) method.name = file_safe(string(*name, "name"));
+            const toml::node* own_passes = table.get("passes");
+            method.plan = plan_of(root, own_passes ? passes(*own_passes) : written_passes_);
             for (const SettingField& field : setting_fields())
                 if (const toml::node* setting = table.get(field.name))
                     method.axes[std::string(field.name)] = axis(*setting, field.name);
@@ -365,6 +382,7 @@ private:
             run.scene = scene;
             run.method = name;
             run.settings = settings;
+            run.plan = method.plan;
             run.seed = seed;
             if (!names_.insert(run.name).second)
                 throw InputError(method.place,
@@ -390,6 +408,8 @@ private:
     Experiment experiment_;
     std::optional<SmokeLimits> smoke_;
     std::optional<Resolution> resolution_;
+    std::uint64_t written_passes_ = 1;
+    std::uint64_t most_written_passes_ = 1;
     std::vector<std::uint64_t> seeds_;
     Axes defaults_;
     std::set<std::string, std::less<>> used_defaults_;

@@ -52,6 +52,13 @@ struct SceneEntry {
     std::vector<Probe> probes;
 };
 
+/// How many passes a run has, and which of them are looked at.
+struct PassPlan {
+    std::uint64_t passes = 1;
+    std::vector<std::uint64_t> recorded;   ///< increasing; always with 0 and the last pass
+    std::vector<std::uint64_t> snapshots;  ///< passes whose image is kept: increasing, always with the last
+};
+
 /// One point of the product.
 struct ExperimentRun {
     std::string name;       ///< unique and fit for a file: the point's, and the seed
@@ -59,6 +66,7 @@ struct ExperimentRun {
     std::size_t scene = 0;  ///< index into Experiment::scenes
     std::string method;     ///< the name its method was given
     ChosenSettings settings;
+    PassPlan plan;  ///< its method's, or the experiment's
     std::uint64_t seed = 1;
 };
 
@@ -68,10 +76,7 @@ struct Experiment {
     std::string title;
     std::vector<SceneEntry> scenes;
     std::vector<ExperimentRun> runs;  ///< scene by scene
-    std::uint64_t passes = 1;
-    std::vector<std::uint64_t> recorded;   ///< increasing; always with 0 and the last pass
-    std::vector<std::uint64_t> snapshots;  ///< passes whose image is kept: increasing, always with the last
-    int samples_per_pixel = 1;             ///< a perfect square
+    int samples_per_pixel = 1;        ///< a perfect square
     int threads = 1;
     bool decomposition = false;  ///< keep sums over seeds, from which bias and variance are told apart
 };

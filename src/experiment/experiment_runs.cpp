@@ -46,7 +46,7 @@ std::string point_key(const Experiment& experiment, const ExperimentRun& run, co
         {"point", run.point},
         {"settings", settings_json(settings.method)},
         {"passes", settings.passes},
-        {"recorded", experiment.recorded},
+        {"recorded", run.plan.recorded},
         {"threads", settings.threads},
         {"width", scene.camera.width},
         {"height", scene.camera.height},
@@ -133,7 +133,7 @@ Ensemble ensemble_of(const Experiment& experiment, const PreparedRun& prepared, 
                      {"reference", entry.reference ? Json{{"path", entry.reference->string()}} : Json()},
                      {"working_directory", std::filesystem::current_path().string()},
                      {"regions", regions},
-                     {"passes", experiment.recorded}});
+                     {"passes", prepared.run->plan.recorded}});
 }
 
 /// Runs methods side by side, each into its folder; run.json goes first and comes last, so that no half-made run looks
@@ -142,6 +142,7 @@ void execute(const Experiment& experiment, const std::vector<const PreparedRun*>
              const HitPoints& hit_points, const Reference* reference, const std::filesystem::path& results,
              const PassListener& on_pass, std::string& summary) {
     const SceneEntry& entry = experiment.scenes[together.at(0)->run->scene];
+    const PassPlan& plan = together.at(0)->run->plan;
     const auto began = std::chrono::steady_clock::now();
     std::vector<OpenRun> open;
     std::vector<RunSettings> settings;
@@ -158,7 +159,7 @@ void execute(const Experiment& experiment, const std::vector<const PreparedRun*>
                        std::chrono::system_clock::now(),
                        0.0,
                        together.size(),
-                       experiment.recorded,
+                       plan.recorded,
                        {}},
              Recorder({experiment.name, prepared->run->name, entry.name, prepared->settings, scene.camera.width,
                        scene.camera.height, experiment.samples_per_pixel, hit_points.points.size()},
@@ -173,11 +174,11 @@ void execute(const Experiment& experiment, const std::vector<const PreparedRun*>
         scene, hit_points, settings,
         [&](std::size_t method, const RunState& state, const Image& image) {
             OpenRun& run = open[method];
-            if (contains(experiment.recorded, state.pass)) {
+            if (contains(plan.recorded, state.pass)) {
                 run.recorder.record(state, image);
                 if (experiment.decomposition) run.recorded_images.push_back({state.pass, image});
             }
-            if (!contains(experiment.snapshots, state.pass)) return;
+            if (!contains(plan.snapshots, state.pass)) return;
             const std::string file = "snapshots/" + snapshot_name(state.pass);
             write_exr(run.prepared->folder / file, image, image_metadata(run.recorder.identity(), state, scene));
             run.record.snapshots.push_back({state.pass, file});
@@ -285,10 +286,10 @@ PreparedExperiment prepare_experiment(const Experiment& experiment, const std::f
         ready.run = run;
         ready.settings.method = resolve(run->settings, scene->max_depth);
         ready.settings.seed = run->seed;
-        ready.settings.passes = experiment.passes;
+        ready.settings.passes = run->plan.passes;
         ready.settings.threads = experiment.threads;
-        std::set_union(experiment.recorded.begin(), experiment.recorded.end(), experiment.snapshots.begin(),
-                       experiment.snapshots.end(), std::back_inserter(ready.settings.estimated));
+        std::set_union(run->plan.recorded.begin(), run->plan.recorded.end(), run->plan.snapshots.begin(),
+                       run->plan.snapshots.end(), std::back_inserter(ready.settings.estimated));
         std::string reference_key;
         if (entry.reference) {
             const auto [known, is_new] = reference_keys.try_emplace({run->scene, ready.settings.method.max_depth});
@@ -298,7 +299,7 @@ PreparedExperiment prepare_experiment(const Experiment& experiment, const std::f
             reference_key = known->second;
         }
         ready.point_key = point_key(experiment, *run, ready.settings, *scene, reference_key);
-        ready.key = hash_text(fmt::format("{} {} {}", ready.point_key, run->seed, Json(experiment.snapshots).dump()));
+        ready.key = hash_text(fmt::format("{} {} {}", ready.point_key, run->seed, Json(run->plan.snapshots).dump()));
         ready.folder = results / "runs" / run->name;
         ready.finished = is_finished(ready.folder, ready.key) &&
                          (!experiment.decomposition || ensemble_of(experiment, ready, results).contains(run->seed));
@@ -315,7 +316,10 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
 
     const std::vector<std::vector<const PreparedRun*>> groups = runs_together(prepared.runs);
     for (const PreparedRun& ready : prepared.runs) outcome.skipped += ready.finished;
-    Progress progress(groups.size() * experiment.passes);
+    std::uint64_t passes = 0;
+    for (const auto& group : groups) passes += group[0]->settings.passes;
+    Progress progress(passes);
+    std::uint64_t passes_before = 0;
     std::optional<std::size_t> current_scene;
     double current_cutoff = 0.0;
     std::optional<HitPoints> hit_points;
@@ -338,11 +342,12 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
 
         const std::string others = groups[i].size() > 1 ? fmt::format(" and {} more", groups[i].size() - 1) : "";
         const std::string counted = fmt::format("{} of {}: {}{}", i + 1, groups.size(), first.run->name, others);
-        progress.show(i * experiment.passes, counted);
+        progress.show(passes_before, counted);
         std::string summary;
         execute(
             experiment, groups[i], scene, *hit_points, reference ? &*reference : nullptr, results,
-            [&](std::uint64_t pass) { progress.show(i * experiment.passes + pass, counted); }, summary);
+            [&](std::uint64_t pass) { progress.show(passes_before + pass, counted); }, summary);
+        passes_before += first.settings.passes;
         outcome.ran += groups[i].size();
         progress.finished(summary);
     }
@@ -391,9 +396,15 @@ std::string list_runs(const Experiment& experiment, const PreparedExperiment& pr
         list += fmt::format("{:<{}}  about {}, {:.0f} MiB\n", ready.run->name, width,
                             describe_duration(estimate.seconds), estimate.mebibytes);
     }
-    list +=
-        fmt::format("\n{} runs of {} passes on {} threads: about {} in all, at most {:.0f} MiB\n", prepared.runs.size(),
-                    experiment.passes, experiment.threads, describe_duration(seconds), mebibytes);
+    const auto by_passes = [](const PreparedRun& a, const PreparedRun& b) {
+        return a.settings.passes < b.settings.passes;
+    };
+    const auto [fewest, most] = std::minmax_element(prepared.runs.begin(), prepared.runs.end(), by_passes);
+    const std::string passes = fewest->settings.passes == most->settings.passes
+                                   ? fmt::format("{}", most->settings.passes)
+                                   : fmt::format("{} to {}", fewest->settings.passes, most->settings.passes);
+    list += fmt::format("\n{} runs of {} passes on {} threads: about {} in all, at most {:.0f} MiB\n",
+                        prepared.runs.size(), passes, experiment.threads, describe_duration(seconds), mebibytes);
     return list;
 }
 

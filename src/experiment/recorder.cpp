@@ -87,6 +87,7 @@ const std::vector<Column>& columns() {
         {"alpha", nullptr},
         {"k", nullptr},
         {"radius_rule", radius_rule},
+        {"footprints", nullptr},
         {"radius_initial", [](const Record& r) { return uses(r, "radius") ? number(r.state.initial_radius) : ""; }},
         {"max_radius", max_radius},
         {"caustic_k", nullptr},

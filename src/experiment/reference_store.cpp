@@ -23,8 +23,6 @@ constexpr std::string_view seed_attribute = "photonlab.seed";
 constexpr std::string_view samples_attribute = "photonlab.samples";
 constexpr std::string_view method_attribute = "photonlab.method";
 
-constexpr double ppm_radius_scale = 0.5;
-
 /// The random streams of one half.
 struct HalfPurposes {
     std::string_view name;
@@ -52,6 +50,7 @@ MethodSettings method_of(const ReferenceSettings& settings) {
     method.integrator = settings.integrator;
     method.schedule = ScheduleName::KnausZwicker;
     method.alpha = settings.alpha;
+    method.footprints *= 0.5;  // half the automatic radius
     method.photons_per_pass = settings.photons_per_pass;
     method.max_depth = settings.max_depth;
     require_valid(method);
@@ -206,8 +205,7 @@ Json add_reference_samples(const Scene& scene, const ReferenceSettings& settings
                                              .seed = settings.seed,
                                              .threads = settings.threads,
                                              .path_purpose = purposes.paths,
-                                             .direct_purpose = purposes.direct,
-                                             .auto_radius_scale = ppm_radius_scale},
+                                             .direct_purpose = purposes.direct},
                            purposes.photons);
     };
     GrowingHalf half_a = half(half_purposes[0]);

@@ -113,7 +113,8 @@ const std::vector<SettingField>& setting_fields() {
         field<&Settings::k>("k", "--k", "photonmapper, mode nearest: photons searched, at least 2"),
         field<&Settings::radius>("radius", "--radius",
                                  "initial (ppm) or fixed (photonmapper) gather radius in scene units, or auto: "
-                                 "three times the pixel's footprint"),
+                                 "the pixel's footprint times --footprints"),
+        field<&Settings::footprints>("footprints", "--footprints", "automatic radius in pixel footprints, above 0"),
         field<&Settings::max_radius>("max_radius", "--max-radius",
                                      "photonmapper, mode nearest: largest radius in scene units, or auto: "
                                      "5% of the scene's bounding radius"),

@@ -87,10 +87,10 @@ std::vector<FluxSum> gather_within(const PhotonMap& map, const Scene& scene, con
     return sums;
 }
 
-/// Initial gather radius of a hit point, unit box: the setting (scene units), or three times the pixel's footprint.
+/// Initial gather radius of a hit point, unit box: the setting (scene units), or so many footprints of the pixel there.
 inline double initial_radius(const MethodSettings& settings, const IntegratorContext& context, std::size_t index) {
     const double radius = settings.radius ? *settings.radius / context.scene.unit_length
-                                          : 3.0 * context.hit_points.footprints[index] * context.auto_radius_scale;
+                                          : settings.footprints * context.hit_points.footprints[index];
     return std::max(radius, PhotonMap::minimum_radius);
 }
 

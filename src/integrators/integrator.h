@@ -52,7 +52,6 @@ struct IntegratorContext {
     int threads = 1;
     RandomPurpose path_purpose = RandomPurpose::CameraPaths;    ///< of `path`; a reference's half has its own
     RandomPurpose direct_purpose = RandomPurpose::DirectLight;  ///< of direct light at hit points; likewise
-    double auto_radius_scale = 1.0;                             ///< on automatic radii; a reference takes smaller ones
 };
 
 class Integrator {

@@ -16,13 +16,13 @@ const std::vector<IntegratorKind>& integrator_kinds() {
         {"path", PhotonNeed::None, {"max_depth", "branch_cutoff"}, make_path},
         {"photonmapper",
          PhotonNeed::AllPassesMaps,
-         {"mode", "k", "radius", "max_radius", "caustic_k", "caustic_radius", "caustic_max_radius", "kernel", "eps",
-          "direct", "direct_samples", "max_depth", "branch_cutoff", "photons_per_pass"},
+         {"mode", "k", "radius", "footprints", "max_radius", "caustic_k", "caustic_radius", "caustic_max_radius",
+          "kernel", "eps", "direct", "direct_samples", "max_depth", "branch_cutoff", "photons_per_pass"},
          make_photonmapper},
         {"ppm",
          PhotonNeed::PassMap,
-         {"schedule", "alpha", "radius", "kernel", "eps", "direct", "direct_samples", "max_depth", "branch_cutoff",
-          "photons_per_pass"},
+         {"schedule", "alpha", "radius", "footprints", "kernel", "eps", "direct", "direct_samples", "max_depth",
+          "branch_cutoff", "photons_per_pass"},
          make_ppm},
     };
     return kinds;
@@ -44,6 +44,7 @@ bool uses_setting(const MethodSettings& settings, std::string_view field) {
     const bool photonmapper = settings.integrator == "photonmapper";
     if (field == "k" || field == "max_radius" || field == "caustic_k" || field == "caustic_max_radius")
         return settings.mode == GatherMode::Nearest;
+    if (field == "footprints") return uses_setting(settings, "radius") && !settings.radius;
     if ((field == "radius" && photonmapper) || field == "caustic_radius") return settings.mode == GatherMode::Radius;
     if (field == "direct_samples") return settings.direct == DirectMode::Sampled;
     return true;
@@ -60,6 +61,8 @@ void require_valid(const MethodSettings& settings) {
     require_alpha(settings.alpha);
     require(settings.k >= 2, "k: expected at least 2 photons, got " + std::to_string(settings.k));
     require(is_length(settings.radius), "radius: expected \"auto\" or a length above 0 in scene units");
+    require(std::isfinite(settings.footprints) && settings.footprints > 0.0,
+            fmt::format("footprints: expected a number above 0, got {}", settings.footprints));
     require(is_length(settings.max_radius), "max_radius: expected \"auto\" or a length above 0 in scene units");
     require(settings.caustic_k >= 2,
             "caustic_k: expected at least 2 photons, got " + std::to_string(settings.caustic_k));

@@ -48,10 +48,11 @@ struct MethodSettings {
     double alpha = 0.7;                               ///< ppm: share of photons kept a pass, in (0, 1]
     int k = 120;                                      ///< photonmapper, nearest: photons searched, >= 2
     std::optional<double> radius = std::nullopt;      ///< initial (ppm) or fixed (photonmapper, radius) gather radius,
-                                                      ///< scene units, > 0; empty: three times the pixel's footprint
-    std::optional<double> max_radius = std::nullopt;  ///< photonmapper, nearest: scene units, > 0; empty: 5% of the
-                                                      ///< scene's bounding radius
-    int caustic_k = 120;                              ///< photonmapper, nearest: the same of the caustic map, >= 2
+                                                  ///< scene units, > 0; empty: the pixel's footprint times `footprints`
+    double footprints = 3.0;                              ///< radius in pixel footprints where `radius` is empty, > 0
+    std::optional<double> max_radius = std::nullopt;      ///< photonmapper, nearest: scene units, > 0; empty: 5% of the
+                                                          ///< scene's bounding radius
+    int caustic_k = 120;                                  ///< photonmapper, nearest: the same of the caustic map, >= 2
     std::optional<double> caustic_radius = std::nullopt;  ///< photonmapper, radius: of the caustic map, scene units,
                                                           ///< > 0; empty: as `radius`
     std::optional<double> caustic_max_radius = std::nullopt;  ///< photonmapper, nearest: of the caustic map, scene

@@ -13,8 +13,8 @@ sys.path.insert(0, str(ANALYSIS))
 import records    # noqa: E402  (only found through the line above)
 
 BASE = {"schema": "1", "experiment": "made-up", "scene": "cornell-box", "integrator": "ppm", "mode": "",
-        "schedule": "hachisuka", "alpha": "0.7", "k": "", "radius_rule": "auto", "radius_initial": "12.345678901",
-        "max_radius": "", "caustic_k": "", "caustic_radius": "",
+        "schedule": "hachisuka", "alpha": "0.7", "k": "", "radius_rule": "auto", "footprints": "3",
+        "radius_initial": "12.345678901", "max_radius": "", "caustic_k": "", "caustic_radius": "",
         "caustic_max_radius": "", "kernel": "disc", "eps": "0", "direct": "sampled", "direct_samples": "1",
         "max_depth": "-1", "branch_cutoff": "0.0001",
         "photons_per_pass": "50000", "width": "64", "height": "48", "samples_per_pixel": "1", "hit_points": "3072",

@@ -101,13 +101,13 @@ class Reading(Folder):
         synthetic.write_csv(self.results, synthetic.rows(constant(1.0)))
         file = self.results / "iterations.csv"
         file.write_text(file.read_text().rstrip()[:-30])
-        self.refused("iterations.csv:129: has ", " fields; the header has 54")
+        self.refused("iterations.csv:129: has ", " fields; the header has 55")
 
     def test_refuses_a_row_with_too_many_fields(self):
         synthetic.write_csv(self.results, synthetic.rows(constant(1.0)))
         with open(self.results / "iterations.csv", "a") as file:
             file.write("," * 60 + "\n")
-        self.refused("iterations.csv:130: has 61 fields; the header has 54")
+        self.refused("iterations.csv:130: has 61 fields; the header has 55")
 
     def test_refuses_a_repeated_row(self):
         made = synthetic.rows(constant(1.0))

@@ -63,20 +63,34 @@ TEST_F(ExperimentFile, TopLevelSettingsAreDefaultsWhereTheyAreUsed) {
 
 TEST_F(ExperimentFile, PassZeroAndTheLastAreAlwaysRecorded) {
     using Passes = std::vector<std::uint64_t>;
-    EXPECT_EQ(read("scenes = [\"lamp.xml\"]\npasses = 11\n" + ppm).recorded, (Passes{0, 1, 2, 4, 8, 11}));
-    EXPECT_EQ(read(least + "record = \"all\"\n" + ppm).recorded, (Passes{0, 1, 2, 3, 4, 5, 6, 7, 8}));
-    const Experiment listed = read(least + "record = [3, 2]\nsnapshots = [1]\n" + ppm);
+    EXPECT_EQ(read("scenes = [\"lamp.xml\"]\npasses = 11\n" + ppm).runs[0].plan.recorded, (Passes{0, 1, 2, 4, 8, 11}));
+    EXPECT_EQ(read(least + "record = \"all\"\n" + ppm).runs[0].plan.recorded, (Passes{0, 1, 2, 3, 4, 5, 6, 7, 8}));
+    const PassPlan listed = read(least + "record = [3, 2]\nsnapshots = [1]\n" + ppm).runs[0].plan;
     EXPECT_EQ(listed.recorded, (Passes{0, 2, 3, 8}));
     EXPECT_EQ(listed.snapshots, (Passes{1, 8}));
+}
+
+// So that methods with different photons a pass can have the same in all.
+TEST_F(ExperimentFile, AMethodMayHavePassesOfItsOwn) {
+    using Passes = std::vector<std::uint64_t>;
+    const std::string methods = ppm + "[[method]]\nname = \"more\"\nintegrator = \"ppm\"\npasses = 20\n";
+    const Experiment experiment = read(least + "record = [3, 12]\n" + methods);
+    EXPECT_EQ(experiment.runs[0].plan.recorded, (Passes{0, 3, 8}));
+    EXPECT_EQ(experiment.runs[1].plan.recorded, (Passes{0, 3, 12, 20}));
+    EXPECT_EQ(experiment.runs[1].plan.passes, 20u);
+    EXPECT_EQ(read(least + methods).runs[1].plan.recorded, (Passes{0, 1, 2, 4, 8, 16, 20}));
+    EXPECT_EQ(read(least + methods, SmokeLimits{}).runs[1].plan.passes, 4u);
+    EXPECT_TRUE(refusal(least + ppm + "passes = 0\n").starts_with(":5: passes: expected a whole number"));
+    EXPECT_TRUE(refusal(least + "record = [21]\n" + methods).starts_with(":3: record: expected a whole number from 0"));
 }
 
 TEST_F(ExperimentFile, SmokeShrinksPassesPhotonsAndSeeds) {
     const Experiment experiment =
         read(least + "seeds = [5, 6, 7]\nrecord = [3, 8]\nsnapshots = [8]\n" + ppm, SmokeLimits{});
     EXPECT_EQ(experiment.name, "question-smoke");
-    EXPECT_EQ(experiment.passes, 4u);
-    EXPECT_EQ(experiment.recorded, (std::vector<std::uint64_t>{0, 3, 4}));
-    EXPECT_EQ(experiment.snapshots, (std::vector<std::uint64_t>{4}));
+    EXPECT_EQ(experiment.runs[0].plan.passes, 4u);
+    EXPECT_EQ(experiment.runs[0].plan.recorded, (std::vector<std::uint64_t>{0, 3, 4}));
+    EXPECT_EQ(experiment.runs[0].plan.snapshots, (std::vector<std::uint64_t>{4}));
     ASSERT_EQ(experiment.runs.size(), 2u);
     EXPECT_EQ(experiment.runs[0].settings.values.photons_per_pass, 2000u);
 }
@@ -94,7 +108,7 @@ TEST_F(ExperimentFile, RefusesBadInputWithItsPlace) {
         {least + "colour = 1\n" + ppm,
          ":3: unknown key \"colour\"; known here: title, scenes, method, seeds, passes, record"},
         {least + ppm + "alhpa = 0.5\n",
-         ":5: unknown key \"alhpa\"; known here: name, integrator, mode, schedule, alpha"},
+         ":5: unknown key \"alhpa\"; known here: name, passes, integrator, mode, schedule, alpha"},
         {"scenes = [{ path = \"lamp.xml\", light = 1 }]\npasses = 1\n" + ppm,
          ":1: unknown key \"light\"; known here: path"},
         {"scenes = [\"gone.xml\"]\npasses = 1\n" + ppm, ":1: scenes: "},

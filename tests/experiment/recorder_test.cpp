@@ -28,7 +28,8 @@ std::string cell(const Record& record, const std::string& column) {
 TEST(Records, ColumnsAreThoseOfTheContract) {
     EXPECT_EQ(
         csv_header(),
-        "schema,experiment,run,scene,integrator,mode,schedule,alpha,k,radius_rule,radius_initial,max_radius,caustic_k,"
+        "schema,experiment,run,scene,integrator,mode,schedule,alpha,k,radius_rule,footprints,radius_initial,max_radius,"
+        "caustic_k,"
         "caustic_radius,caustic_max_radius,kernel,eps,"
         "direct,direct_samples,max_depth,branch_cutoff,photons_per_pass,width,height,samples_per_pixel,hit_points,seed,"
         "threads,"
@@ -48,6 +49,7 @@ TEST(Records, WhatDoesNotApplyIsEmpty) {
                                "alpha",
                                "k",
                                "radius_rule",
+                               "footprints",
                                "radius_initial",
                                "max_radius",
                                "caustic_k",

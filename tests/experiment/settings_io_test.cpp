@@ -21,6 +21,7 @@ TEST(SettingsTable, ReadsBackWhatItWrites) {
     written.alpha = 1.0 / 3.0;
     written.k = 77;
     written.radius = 0.1;
+    written.footprints = 2.5;
     written.max_radius = 1e-30;
     written.kernel = Kernel::Biweight;
     written.eps = 0.25;

@@ -29,6 +29,7 @@ TEST(Registry, RefusesValuesOutOfRangeAndSaysWhatItExpects) {
         EXPECT_NE(refusal({.alpha = alpha}).find("alpha"), std::string::npos);
     for (const double radius : {0.0, -1.0, nan, too_large}) {
         EXPECT_NE(refusal({.radius = radius}).find("radius"), std::string::npos);
+        EXPECT_NE(refusal({.footprints = radius}).find("footprints"), std::string::npos);
         EXPECT_NE(refusal({.max_radius = radius}).find("max_radius"), std::string::npos);
     }
     for (const int k : {1, 0, -3}) EXPECT_NE(refusal({.k = k}).find("k:"), std::string::npos);
@@ -52,6 +53,9 @@ TEST(Registry, KnowsWhichSettingsAMethodUses) {
     const MethodSettings fixed{.integrator = "photonmapper"};
     EXPECT_TRUE(uses_setting(nearest, "k"));
     EXPECT_FALSE(uses_setting(nearest, "radius"));
+    EXPECT_FALSE(uses_setting(nearest, "footprints"));
+    EXPECT_TRUE(uses_setting(fixed, "footprints"));
+    EXPECT_FALSE(uses_setting({.radius = 2.0}, "footprints"));
     EXPECT_FALSE(uses_setting(fixed, "k"));
     EXPECT_TRUE(uses_setting(fixed, "radius"));
     EXPECT_FALSE(uses_setting(fixed, "alpha"));
