@@ -67,9 +67,9 @@ def draw_heat_map(scene, rows, across, down):
                       fontweight="bold" if error == least else "normal")
     axes.set_xticks(range(len(columns)), [short(value) for value in columns])
     axes.set_yticks(range(len(lines)), [short(value) for value in lines])
-    axes.set_xlabel(records.SETTING_NAMES.get(across, across))
-    axes.set_ylabel(records.SETTING_NAMES.get(down, down))
-    axes.set_title(f"{scene}: RMSE at pass {rows['pass'].max():.0f}", loc="left")
+    axes.set_xlabel(records.axis_text(across))
+    axes.set_ylabel(records.axis_text(down))
+    axes.set_title(f"{scene}: RMSE at pass {rows['pass'].max():.0f} (radiance)", loc="left")
     return figure
 
 
@@ -110,8 +110,8 @@ def draw_differences(scene, results, rows, across, down):
                 axes.set_xlabel(short(value))
             if j == 0:
                 axes.set_ylabel(f"{short(line)}")
-    figure.supylabel(records.SETTING_NAMES.get(down, down), fontsize=9)
-    figure.supxlabel(records.SETTING_NAMES.get(across, across), fontsize=9)
+    figure.supylabel(records.axis_text(down), fontsize=9)
+    figure.supxlabel(records.axis_text(across), fontsize=9)
     figure.colorbar(picture, ax=grid, shrink=0.6, label="radiance − reference")
     figure.suptitle(f"{scene}: difference at pass {rows['pass'].max():.0f}", fontsize=9.5, x=0.01, ha="left")
     return figure

@@ -40,6 +40,7 @@ SETTING_NAMES = {"alpha": "α", "radius_initial": "initial radius", "max_radius"
                  "caustic_max_radius": "maximum caustic radius", "branch_cutoff": "branch cut-off",
                  "footprints": "radius in footprints",
                  "photons_per_pass": "photons a pass", "samples_per_pixel": "samples a pixel"}
+LENGTHS = ["radius_initial", "max_radius", "caustic_radius", "caustic_max_radius"]    # in scene units
 MODE_ORDER = ["radius", "nearest"]
 BARE_SETTINGS = ["integrator", "mode", "schedule", "kernel"]    # their values say what they are
 
@@ -146,6 +147,11 @@ def setting_text(column, value):
     number = as_number(value)
     shown = value if number is None else f"{number:.4g}" if len(value) > 7 else value
     return f"{SETTING_NAMES.get(column, column.replace('_', ' '))} = {shown}"
+
+
+def axis_text(column):
+    """How an axis names a setting, with its unit: "α", "initial radius (scene units)"."""
+    return SETTING_NAMES.get(column, column.replace("_", " ")) + (" (scene units)" if column in LENGTHS else "")
 
 
 def method_labels(records):

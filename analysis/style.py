@@ -1,7 +1,7 @@
 """How every figure looks: made for the column of a paper, for readers who do not see all colours, and for a printer
 that has none. So a method has a colour, a marker and a line of its own, and each alone nearly tells it.
 
-Colours: Okabe and Ito 2008, "Color Universal Design", without the yellow, which a white page swallows.
+Colours: Okabe and Ito 2008, "Color Universal Design", with a grey in place of the yellow, which a white page swallows.
 """
 
 import itertools
@@ -15,10 +15,10 @@ matplotlib.use("Agg")    # draws to files and never opens a window
 import matplotlib.pyplot as pyplot
 from matplotlib import ticker
 
-COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#56B4E9", "#E69F00"]
+COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#56B4E9", "#E69F00", "#8A8A8A"]
 MARKERS = ["o", "s", "^", "D", "v", "P", "X", "<", ">", "*", "p"]
 LINES = {"photonmapper radius": (0, (5, 1.5)), "photonmapper nearest": (0, (5, 1.5, 1, 1.5)), "path": (0, (1, 1.2)),
-         "ppm": "solid"}
+         "ppm hachisuka": "solid", "ppm knaus-zwicker": (0, (9, 1.2, 1.2, 1.2))}
 
 FULL_WIDTH = 6.6    # inches; text of 9 points can still be read where the page shrinks it to a column
 
@@ -35,14 +35,14 @@ def use():
 
 
 def kind(row):
-    """ "photonmapper radius", "ppm": what has a line pattern of its own."""
-    return " ".join(filter(None, [row["integrator"], row["mode"]]))
+    """ "photonmapper radius", "ppm hachisuka": what has a line pattern of its own."""
+    return " ".join(filter(None, [row["integrator"], row["mode"], row["schedule"]]))
 
 
 def method_styles(records, labels):
     """Line settings by label. Patterns go by kind of method, so that PM and PPM are told apart at a glance. A sweep,
-    more than four methods of one kind, goes from dark to light in their order; all else has 7 colours. With 11 markers
-    no pair comes again before the 78th method."""
+    more than four methods of one kind, goes from dark to light in their order; all else has 8 colours. With 11 markers
+    no pair comes again before the 89th method."""
     first_rows = records.drop_duplicates("method").set_index("method")
     kinds = [kind(first_rows.loc[label]) for label in labels]
     single_colours = itertools.cycle(COLOURS)
