@@ -13,6 +13,7 @@
 #include "app/options.h"
 #include "experiment/experiment_file.h"
 #include "scene/loader.h"
+#include "scene/narrow_gaps.h"
 #include "transport/hit_points.h"
 
 namespace photonlab {
@@ -62,6 +63,18 @@ void print_emitters(const Scene& scene) {
     }
 }
 
+void print_narrow_gaps(const Scene& scene) {
+    const NarrowGaps gaps = find_narrow_gaps(scene);
+    if (!gaps.first) return;
+    const VectorD position = VectorD(gaps.first->position) * scene.unit_length + scene.centre;
+    fmt::print(
+        "warning     surfaces are less than {:g} of the scene apart at {} of {} points tried, the first between shapes "
+        "{} "
+        "and {} at {:.6g} {:.6g} {:.6g}: light can pass between them or meet the wrong one\n",
+        narrowest_gap, gaps.found, gaps.tried, gaps.first->shape + 1, gaps.first->other + 1, position.x, position.y,
+        position.z);
+}
+
 void info(const InfoOptions& options) {
     std::optional<Resolution> resolution;
     if (!options.resolution.empty()) resolution = parse_resolution(options.resolution);
@@ -89,6 +102,7 @@ void info(const InfoOptions& options) {
                    3.0 * sum / static_cast<double>(count) * scene.unit_length);
     }
     for (const std::string& note : scene.notes) fmt::print("note        {}\n", note);
+    print_narrow_gaps(scene);
     if (scene.emitters.empty()) fmt::print("warning     there is no light: every image of this scene is black\n");
     if (count == 0) fmt::print("warning     the camera sees no surface to gather at\n");
 }

@@ -14,6 +14,19 @@ double knaus_zwicker_shrink(double alpha, std::uint64_t pass) {
     return (i + alpha) / (i + 1.0);
 }
 
+void take_pass(GatherStatistics& statistics, ScheduleName schedule, double alpha, const PassGather& gathered,
+               double least_squared_radius) {
+    statistics.estimate += (gathered.estimate - statistics.estimate) / static_cast<double>(gathered.passes);
+    if (schedule == ScheduleName::Hachisuka) {
+        statistics.squared_radius *= hachisuka_shrink(alpha, statistics.count, gathered.found);
+        statistics.count += alpha * gathered.found;
+    } else {
+        statistics.squared_radius *= knaus_zwicker_shrink(alpha, gathered.pass);
+        statistics.count += gathered.found;
+    }
+    statistics.squared_radius = std::max(statistics.squared_radius, least_squared_radius);
+}
+
 void require_alpha(double alpha) {
     if (!(alpha > 0.0 && alpha <= 1.0))
         throw InputError(fmt::format("alpha: expected a number in (0, 1], got {}", alpha));

@@ -39,6 +39,20 @@ double hachisuka_shrink(double alpha, double count, double found);
 /// [Knaus & Zwicker 2011]
 double knaus_zwicker_shrink(double alpha, std::uint64_t pass);
 
+/// What one pass brings to one hit point.
+struct PassGather {
+    std::uint64_t pass = 1;         ///< its number, from 1
+    std::uint64_t passes = 1;       ///< taken by this hit point so far, with this one
+    double found = 0.0;             ///< photons within the radius
+    ColorD estimate = ColorD(0.0);  ///< the pass's own density estimate, with the radius before it shrinks
+};
+
+/// Takes a pass: the estimate is the running mean of the passes' own, which needs no product of a million factors
+/// (theory.md, section 1), and the radius shrinks by the schedule, to `least_squared_radius` and no further. A pass
+/// without photons counts.
+void take_pass(GatherStatistics& statistics, ScheduleName schedule, double alpha, const PassGather& gathered,
+               double least_squared_radius);
+
 /// Throws InputError unless 0 < alpha <= 1.
 void require_alpha(double alpha);
 

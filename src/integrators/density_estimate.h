@@ -87,11 +87,16 @@ std::vector<FluxSum> gather_within(const PhotonMap& map, const Scene& scene, con
     return sums;
 }
 
+/// Radii that can be asked for, in shares of the scene (unit box). Float positions near its walls are 3e-8 apart: a
+/// disc of 1e-6 still has its area to 0.2%, one of 1e-7 to 5%. The largest is what float can still square.
+inline constexpr double smallest_initial_radius = 1e-7;
+inline constexpr double largest_initial_radius = 1e18;
+
 /// Initial gather radius of a hit point, unit box: the setting (scene units), or so many footprints of the pixel there.
 inline double initial_radius(const MethodSettings& settings, const IntegratorContext& context, std::size_t index) {
     const double radius = settings.radius ? *settings.radius / context.scene.unit_length
                                           : settings.footprints * context.hit_points.footprints[index];
-    return std::max(radius, PhotonMap::minimum_radius);
+    return std::max(radius, smallest_initial_radius);
 }
 
 }  // namespace photonlab

@@ -23,7 +23,7 @@ public:
         : settings_(settings), context_(context), direct_(context, settings) {
         const double unit_length = context.scene.unit_length;
         const auto unit_box = [&](const std::optional<double>& given, double otherwise) {
-            return std::max(given ? *given / unit_length : otherwise, PhotonMap::minimum_radius);
+            return std::max(given ? *given / unit_length : otherwise, smallest_initial_radius);
         };
         global_.k = static_cast<std::size_t>(settings.k);
         caustic_.k = static_cast<std::size_t>(settings.caustic_k);

@@ -98,18 +98,12 @@ private:
     /// One pass at one hit point.
     void update(GatherStatistics& statistics, const FluxSum& sum, std::uint64_t paths, std::uint64_t pass) const {
         const double area = pi * statistics.squared_radius;
-        const ColorD estimate = sum.flux() / (area * static_cast<double>(paths));
-        statistics.estimate += (estimate - statistics.estimate) / static_cast<double>(passes_);
-
-        const double found = static_cast<double>(sum.count());
-        if (settings_.schedule == ScheduleName::Hachisuka) {
-            statistics.squared_radius *= hachisuka_shrink(settings_.alpha, statistics.count, found);
-            statistics.count += settings_.alpha * found;
-        } else {
-            statistics.squared_radius *= knaus_zwicker_shrink(settings_.alpha, pass);
-            statistics.count += found;
-        }
-        statistics.squared_radius = std::max(statistics.squared_radius, smallest_squared_radius);
+        take_pass(statistics, settings_.schedule, settings_.alpha,
+                  {.pass = pass,
+                   .passes = passes_,
+                   .found = static_cast<double>(sum.count()),
+                   .estimate = sum.flux() / (area * static_cast<double>(paths))},
+                  smallest_squared_radius);
     }
 
     const MethodSettings settings_;

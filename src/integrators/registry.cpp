@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
+#include "integrators/density_estimate.h"
 #include "integrators/path.h"
 #include "integrators/photonmapper.h"
 #include "integrators/ppm.h"
@@ -80,8 +83,26 @@ void require_valid(const MethodSettings& settings) {
     require(settings.photons_per_pass >= 1, "photons_per_pass: expected at least 1");
 }
 
+namespace {
+
+/// A radius that float32 geometry cannot resolve would give an image that is merely wrong.
+void require_resolvable(std::string_view name, const std::optional<double>& radius, const Scene& scene) {
+    if (!radius) return;
+    const double share = *radius / scene.unit_length;
+    if (!(share >= smallest_initial_radius && share <= largest_initial_radius))
+        throw InputError(
+            fmt::format("{}: expected from {:g} to {:g} of the scene, which is {:g} scene units large, got {:g}", name,
+                        smallest_initial_radius, largest_initial_radius, scene.unit_length, *radius));
+}
+
+}  // namespace
+
 std::unique_ptr<Integrator> make_integrator(const MethodSettings& settings, const IntegratorContext& context) {
     require_valid(settings);
+    require_resolvable("radius", settings.radius, context.scene);
+    require_resolvable("max_radius", settings.max_radius, context.scene);
+    require_resolvable("caustic_radius", settings.caustic_radius, context.scene);
+    require_resolvable("caustic_max_radius", settings.caustic_max_radius, context.scene);
     return find_integrator_kind(settings.integrator).make(settings, context);
 }
 

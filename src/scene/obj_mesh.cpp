@@ -29,6 +29,7 @@ constexpr std::size_t corner_limit = 255;  // of one face: tinyobjloader 2.0.0rc
 /// parser would take for more corners. Lines end as they do for the parser: at \n, \r or both.
 template <typename Use>
 void for_each_data_line(std::string& text, const Use& use) {
+    constexpr std::string_view blanks = " \t\v\f";
     std::vector<std::string_view> words;
     std::size_t number = 0;
     for (std::size_t begin = 0; begin < text.size();) {
@@ -37,7 +38,6 @@ void for_each_data_line(std::string& text, const Use& use) {
         const std::size_t next = text.compare(end, 2, "\r\n") == 0 ? end + 2 : end + 1;
         const auto split = [&](std::size_t stop) {
             words.clear();
-            constexpr std::string_view blanks = " \t\v\f";
             const std::string_view line = std::string_view(text).substr(begin, stop - begin);
             for (std::size_t i = line.find_first_not_of(blanks); i < line.size();
                  i = line.find_first_not_of(blanks, i)) {
@@ -48,7 +48,10 @@ void for_each_data_line(std::string& text, const Use& use) {
         };
         split(end);
         if (!words.empty() && (words[0] == "v" || words[0] == "vn" || words[0] == "vt" || words[0] == "f")) {
-            const std::size_t comment = std::min(text.find('#', begin), end);
+            // A # inside a word begins none: 1.#IND is how some programs write what is not a number.
+            std::size_t comment = std::min(text.find('#', begin), end);
+            while (comment < end && blanks.find(text[comment - 1]) == blanks.npos)
+                comment = std::min(text.find('#', comment + 1), end);
             std::fill(text.begin() + static_cast<std::ptrdiff_t>(comment),
                       text.begin() + static_cast<std::ptrdiff_t>(end), ' ');
             split(comment);

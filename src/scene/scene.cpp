@@ -6,6 +6,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <set>
+#include <tuple>
+
 #include "core/error.h"
 #include "scene/embree_scene.h"
 
@@ -133,7 +138,8 @@ struct ToUnitBox {
     VectorD centre;
     double unit_length;
 
-    Vector operator()(const VectorD& point) const { return Vector((point - centre) / unit_length); }
+    VectorD exact(const VectorD& point) const { return (point - centre) / unit_length; }
+    Vector operator()(const VectorD& point) const { return Vector(exact(point)); }
     float length(double scene_units) const { return static_cast<float>(scene_units / unit_length); }
 };
 
@@ -151,12 +157,22 @@ ToUnitBox make_unit_box(const Bounds& box) {
     return {centre, unit_length};
 }
 
-/// Normal of a triangle, twice as long as its area.
-VectorD area_vector(const TriangleMesh& mesh, const Imath::Vec3<std::uint32_t>& triangle) {
-    const VectorD a(mesh.positions[triangle.x]);
-    const VectorD b(mesh.positions[triangle.y]);
-    const VectorD c(mesh.positions[triangle.z]);
-    return (b - a).cross(c - a);
+/// Corners of a triangle, unit box, before they are rounded to float: rounding turns the plane of a sliver.
+std::array<VectorD, 3> corners(const MeshDescription& mesh, std::size_t triangle, const ToUnitBox& to_unit_box) {
+    const auto& vertices = mesh.triangles[triangle];
+    return {to_unit_box.exact(mesh.positions[vertices.x]), to_unit_box.exact(mesh.positions[vertices.y]),
+            to_unit_box.exact(mesh.positions[vertices.z])};
+}
+
+/// Nine numbers that tell two triangles apart, whichever corner they begin with.
+std::array<double, 9> identity_of(std::array<VectorD, 3> triangle) {
+    const auto is_before = [](const VectorD& a, const VectorD& b) {
+        return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+    };
+    std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end(), is_before), triangle.end());
+    std::array<double, 9> numbers{};
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = triangle[i / 3][static_cast<int>(i % 3)];
+    return numbers;
 }
 
 Shape make_shape(const ShapeDescription& description, const ToUnitBox& to_unit_box) {
@@ -170,10 +186,13 @@ Shape make_shape(const ShapeDescription& description, const ToUnitBox& to_unit_b
         for (const Imath::V2d& uv : source->texture_coordinates)
             mesh.texture_coordinates.emplace_back(static_cast<float>(uv.x), static_cast<float>(uv.y));
         shape.area = 0.0;
-        for (const auto& triangle : mesh.triangles) {
-            const VectorD normal = area_vector(mesh, triangle);
+        std::set<std::array<double, 9>> shining;  // a triangle that is there twice shines once
+        for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+            const std::array<VectorD, 3> triangle = corners(*source, i, to_unit_box);
+            const VectorD normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
             mesh.geometric_normals.emplace_back(normal.normalized());
-            shape.area += 0.5 * normal.length();
+            if (!description.radiance || shining.insert(identity_of(triangle)).second)
+                shape.area += 0.5 * normal.length();
             if (description.radiance) shape.triangle_cdf.push_back(shape.area);
         }
         if (shape.area > 0.0)
