@@ -119,6 +119,7 @@ public:
             photons_.index_pass();
         }
         integrator_->run_pass(samples(), photons_, [](Stage) {});
+        photons_.end_pass();
     }
 
     /// Mean over old and new samples, in double until it is stored.

@@ -163,9 +163,9 @@ std::vector<RunState> run_methods(const Scene& scene, const HitPoints& hit_point
             }
             photons.begin_pass(std::move(traced));
         }
-        if (needs_pass_map) charge(methods, PhotonNeed::PassMap, timed(Stage::Build, [&] { photons.index_pass(); }));
         if (needs_all_passes)
             charge(methods, PhotonNeed::AllPassesMaps, timed(Stage::Build, [&] { photons.add_pass(); }));
+        if (needs_pass_map) charge(methods, PhotonNeed::PassMap, timed(Stage::Build, [&] { photons.index_pass(); }));
         for (std::size_t i = 0; i < methods.size(); ++i) {
             RunningMethod& method = methods[i];
             StageClock clock;
@@ -175,6 +175,7 @@ std::vector<RunState> run_methods(const Scene& scene, const HitPoints& hit_point
             method.state.pass = pass;
             if (method.needs == PhotonNeed::PassMap) on_gather(i, pass, *method.integrator);
         }
+        photons.end_pass();
         estimate_if_asked(pass);
         on_pass(pass);
     }

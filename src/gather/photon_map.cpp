@@ -167,7 +167,7 @@ PhotonMap::PhotonMap(std::vector<Photon> photons) {
                          std::to_string(photons.size()));
 
     const std::uint64_t count = photons.size();
-    const std::uint64_t photon_bytes = photons.capacity() * sizeof(Photon);
+    const std::uint64_t photon_bytes = count * sizeof(Photon);
     {
         std::vector<SortKey> keys = morton_keys(photons);
         radix_sort(keys);

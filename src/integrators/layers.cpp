@@ -1,5 +1,6 @@
 #include "integrators/layers.h"
 
+#include <array>
 #include <numeric>
 
 #include "core/parallel.h"
@@ -35,6 +36,37 @@ void set_radii(IntegratorReport& report, const std::vector<double>& radii, doubl
     report.radius_max = *largest * unit_length;
 }
 
+namespace {
+
+/// Connections whose shadow rays wait for each other, to be traced eight at a time.
+class WaitingConnections {
+public:
+    /// Once traced, the connection's contribution is added to `sum` if nothing blocks it.
+    void add(const Scene& scene, const LightConnection& connection, ColorD& sum) {
+        segments_[count_] = connection.segment;
+        contributions_[count_] = connection.light.contribution;
+        sums_[count_] = &sum;
+        if (++count_ == capacity) trace(scene);
+    }
+
+    /// Traces those that still wait.
+    void trace(const Scene& scene) {
+        const unsigned occluded = occluded_of_eight(scene, {segments_.data(), count_});
+        for (std::size_t i = 0; i < count_; ++i)
+            if (!(occluded >> i & 1u)) *sums_[i] += contributions_[i];
+        count_ = 0;
+    }
+
+private:
+    static constexpr std::size_t capacity = 8;
+    std::size_t count_ = 0;
+    std::array<Segment, capacity> segments_;
+    std::array<ColorD, capacity> contributions_;
+    std::array<ColorD*, capacity> sums_;
+};
+
+}  // namespace
+
 DirectLight::DirectLight(const IntegratorContext& context, const MethodSettings& settings)
     : context_(context),
       samples_(settings.direct == DirectMode::Sampled ? settings.direct_samples : 0),
@@ -46,15 +78,21 @@ void DirectLight::add_samples(std::uint64_t pass, std::vector<ColorD>& sums) con
     const std::vector<HitPoint>& points = context_.hit_points.points;
     parallel_for(block_count(points.size(), hit_points_per_block), context_.threads, [&](std::size_t block) {
         const BlockRange range = block_range(block, points.size(), hit_points_per_block);
+        std::array<ColorD, hit_points_per_block> sum_of;
+        sum_of.fill(ColorD(0.0));
+        WaitingConnections waiting;
         for (std::size_t i = range.begin; i < range.end; ++i) {
             if (!depth_allows(max_depth_, points[i].camera_edges + 1u)) continue;
             RandomStream random(context_.seed, context_.direct_purpose, pass, i);
             const Surface surface = surface_at(context_.scene, points[i]);
-            ColorD sum(0.0);
-            for (int sample = 0; sample < samples_; ++sample)
-                sum += sample_direct_light(context_.scene, surface, points[i].outgoing, random);
-            sums[i] += sum / static_cast<double>(samples_);
+            for (int sample = 0; sample < samples_; ++sample) {
+                const auto connection = draw_connection(context_.scene, surface, points[i].outgoing, random);
+                if (connection) waiting.add(context_.scene, *connection, sum_of[i - range.begin]);
+            }
         }
+        waiting.trace(context_.scene);
+        for (std::size_t i = range.begin; i < range.end; ++i)
+            sums[i] += sum_of[i - range.begin] / static_cast<double>(samples_);
     });
 }
 

@@ -4,11 +4,15 @@ namespace photonlab {
 
 void PhotonSupply::begin_pass(PhotonPass photons) {
     pass_ = std::move(photons);
-    pass_map_.reset();
 }
 
 void PhotonSupply::index_pass() {
-    pass_map_.emplace(pass_.photons);
+    pass_map_.emplace(std::move(pass_.photons));
+}
+
+void PhotonSupply::end_pass() {
+    pass_map_.reset();
+    pass_.photons = {};
 }
 
 void PhotonSupply::add_pass() {

@@ -20,14 +20,17 @@ enum class PhotonNeed { None, PassMap, AllPassesMaps };
 
 class PhotonSupply {
 public:
-    /// Replaces the photons of the pass by those of the next.
     void begin_pass(PhotonPass photons);
-
-    /// Indexes the photons of the pass: PhotonNeed::PassMap, before a method's run_pass().
-    void index_pass();
 
     /// Adds the photons of the pass to those of all passes: PhotonNeed::AllPassesMaps, in every pass.
     void add_pass();
+
+    /// Turns the photons of the pass into a map: PhotonNeed::PassMap, before a method's run_pass(). After add_pass(),
+    /// for they are moved, not copied.
+    void index_pass();
+
+    /// Frees the photons of the pass and their map, so that they are gone before the next pass is traced.
+    void end_pass();
 
     /// Indexes the photons of all passes: PhotonNeed::AllPassesMaps, before a method's estimate().
     void index_all_passes();

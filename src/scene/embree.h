@@ -32,4 +32,15 @@ inline void trace_any(RTCScene scene, RTCRay& ray) {
 #endif
 }
 
+/// trace_any() for eight rays at once; those whose `valid` is 0 are left alone, those whose is -1 are traced.
+inline void trace_any_of_eight(RTCScene scene, const int* valid, RTCRay8& rays) {
+#if RTC_VERSION_MAJOR >= 4
+    rtcOccluded8(valid, scene, &rays);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded8(valid, scene, &context, &rays);
+#endif
+}
+
 }  // namespace photonlab

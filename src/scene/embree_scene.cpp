@@ -90,7 +90,7 @@ void set_bounds(const RTCBoundsFunctionArguments* arguments) {
     bounds.upper_z = centre.z + reach.z;
 }
 
-// Only single rays are ever traced, so N is 1 and the packets are plain structs.
+// Nearest hits are only ever asked of single rays, so N is 1 and the packet is a plain struct.
 void intersect_callback(const RTCIntersectFunctionNArguments* arguments) {
     if (!arguments->valid[0]) return;
     auto& query = *reinterpret_cast<RTCRayHit*>(arguments->rayhit);
@@ -104,9 +104,12 @@ void intersect_callback(const RTCIntersectFunctionNArguments* arguments) {
 }
 
 void occluded_callback(const RTCOccludedFunctionNArguments* arguments) {
-    if (!arguments->valid[0]) return;
-    auto& ray = *reinterpret_cast<RTCRay*>(arguments->ray);
-    if (first_hit(shape_of(arguments->geometryUserPtr), ray)) ray.tfar = -infinity;
+    for (unsigned i = 0; i < arguments->N; ++i) {
+        if (!arguments->valid[i]) continue;
+        const RTCRay ray = rtcGetRayFromRayN(arguments->ray, arguments->N, i);
+        if (first_hit(shape_of(arguments->geometryUserPtr), ray))
+            RTCRayN_tfar(arguments->ray, arguments->N, i) = -infinity;
+    }
 }
 
 void fail(void*, RTCError, const char* message) {

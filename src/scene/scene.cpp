@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <set>
 #include <tuple>
 
@@ -388,22 +389,46 @@ std::optional<Hit> intersect(const Scene& scene, const Ray& ray) {
     return found;
 }
 
-bool is_occluded(const Scene& scene, const Vector& from, const Vector& to) {
-    const Vector direction = to - from;
+// Both ends of a segment were moved off their surfaces by far more than this; it only keeps the rounding of its direction
+// from reaching past the far end.
+constexpr float segment_end = 1.0f - 4.0f * std::numeric_limits<float>::epsilon();
+
+bool is_occluded(const Scene& scene, const Segment& segment) {
+    const Vector direction = segment.to - segment.from;
     RTCRay ray{};
-    ray.org_x = from.x;
-    ray.org_y = from.y;
-    ray.org_z = from.z;
+    ray.org_x = segment.from.x;
+    ray.org_y = segment.from.y;
+    ray.org_z = segment.from.z;
     ray.dir_x = direction.x;
     ray.dir_y = direction.y;
     ray.dir_z = direction.z;
     ray.tnear = 0.0f;
-    // Both ends were moved off their surfaces by far more than this; it only keeps the rounding of `direction` from
-    // reaching past the far end.
-    ray.tfar = 1.0f - 4.0f * std::numeric_limits<float>::epsilon();
+    ray.tfar = segment_end;
     ray.mask = ~0u;
     trace_any(scene.embree->scene, ray);
     return ray.tfar < 0.0f;
+}
+
+unsigned occluded_of_eight(const Scene& scene, std::span<const Segment> segments) {
+    assert(segments.size() <= 8);
+    RTCRay8 rays{};
+    alignas(32) int valid[8] = {};
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+        const Vector direction = segments[i].to - segments[i].from;
+        rays.org_x[i] = segments[i].from.x;
+        rays.org_y[i] = segments[i].from.y;
+        rays.org_z[i] = segments[i].from.z;
+        rays.dir_x[i] = direction.x;
+        rays.dir_y[i] = direction.y;
+        rays.dir_z[i] = direction.z;
+        rays.tfar[i] = segment_end;
+        rays.mask[i] = ~0u;
+        valid[i] = -1;
+    }
+    trace_any_of_eight(scene.embree->scene, valid, rays);
+    unsigned occluded = 0;
+    for (std::size_t i = 0; i < segments.size(); ++i) occluded |= static_cast<unsigned>(rays.tfar[i] < 0.0f) << i;
+    return occluded;
 }
 
 }  // namespace photonlab

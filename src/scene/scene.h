@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -132,9 +133,18 @@ Scene build_scene(const SceneDescription& description, std::optional<Resolution>
 /// First surface along the ray, or nothing.
 std::optional<Hit> intersect(const Scene& scene, const Ray& ray);
 
-/// True when a surface lies strictly between two points, which the caller has moved off their own surfaces
-/// (offset_from_surface).
-bool is_occluded(const Scene& scene, const Vector& from, const Vector& to);
+/// Two points, which the caller has moved off their own surfaces (offset_from_surface).
+struct Segment {
+    Vector from;
+    Vector to;
+};
+
+/// True when a surface lies strictly between the two points.
+bool is_occluded(const Scene& scene, const Segment& segment);
+
+/// is_occluded() of up to eight segments at once: a bit each, the first one's lowest. Three times as fast when they are
+/// neighbours.
+unsigned occluded_of_eight(const Scene& scene, std::span<const Segment> segments);
 
 /// A surface point turned to the side that a direction came from, ready to be shaded.
 struct Surface {

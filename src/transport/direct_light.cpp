@@ -4,12 +4,7 @@
 
 namespace photonlab {
 
-ColorD sample_direct_light(const Scene& scene, const Surface& surface, const Vector& outgoing, RandomStream& random) {
-    const std::optional<ConnectedLight> light = connect_to_light(scene, surface, outgoing, random);
-    return light ? light->contribution : ColorD(0.0);
-}
-
-std::optional<ConnectedLight> connect_to_light(const Scene& scene, const Surface& surface, const Vector& outgoing,
+std::optional<LightConnection> draw_connection(const Scene& scene, const Surface& surface, const Vector& outgoing,
                                                RandomStream& random) {
     if (scene.emitters.empty()) return std::nullopt;
     const std::uint32_t emitter = choose_emitter(scene, random.next_double());
@@ -23,14 +18,21 @@ std::optional<ConnectedLight> connect_to_light(const Scene& scene, const Surface
     const Color f = evaluate(surface.bsdf, local_outgoing, local_incoming);
     if (is_black(f)) return std::nullopt;
     const Vector origin = offset_from_surface(surface.position, surface.geometric_normal, light->direction);
-    if (is_occluded(scene, origin, light->position)) return std::nullopt;
 
     const double probability = scene.emitters[emitter].choice_probability;
     const double cosine = std::abs(local_incoming.z);
-    return ConnectedLight{
+    const ConnectedLight connected{
         .contribution = light->radiance * ColorD(f) * (cosine / (light->density * probability)),
         .light_density = light->is_delta ? 0.0 : light->density * probability,
         .bsdf_density = light->is_delta ? 0.0 : density(surface.bsdf, local_outgoing, local_incoming)};
+    return LightConnection{connected, {origin, light->position}};
+}
+
+std::optional<ConnectedLight> connect_to_light(const Scene& scene, const Surface& surface, const Vector& outgoing,
+                                               RandomStream& random) {
+    const std::optional<LightConnection> connection = draw_connection(scene, surface, outgoing, random);
+    if (!connection || is_occluded(scene, connection->segment)) return std::nullopt;
+    return connection->light;
 }
 
 }  // namespace photonlab

@@ -13,19 +13,26 @@ namespace photonlab {
 
 /// One unoccluded connection of a surface to a light.
 struct ConnectedLight {
-    ColorD contribution;   ///< radiance reflected towards the viewer, divided by the density of the connection
+    ColorD contribution;   ///< radiance reflected towards the viewer, divided by the density of the connection: unbiased,
+                           ///< its noise is that of the choice of light and of the point on it
     double light_density;  ///< per steradian, with which this direction was drawn, the choice of light included;
                            ///< 0 for a point light, which no other technique can find
     double bsdf_density;   ///< per steradian, with which the material would have drawn it; 0 for a point light
 };
 
-/// Connects `surface` to one point on one light; empty when no light comes from there. Always draws the same number of
-/// random numbers.
-std::optional<ConnectedLight> connect_to_light(const Scene& scene, const Surface& surface, const Vector& outgoing,
+/// A connection before its shadow ray.
+struct LightConnection {
+    ConnectedLight light;
+    Segment segment;  ///< from the surface to the light, whose occlusion is still to be asked for
+};
+
+/// Draws a connection of `surface` to one point on one light; empty when no light comes from there, whatever lies
+/// between. Always draws the same number of random numbers.
+std::optional<LightConnection> draw_connection(const Scene& scene, const Surface& surface, const Vector& outgoing,
                                                RandomStream& random);
 
-/// One sample of the radiance that leaves `surface` towards `outgoing` (unit, world) after light came straight from a
-/// light source. Unbiased; its noise is that of the choice of light and of the point on it.
-ColorD sample_direct_light(const Scene& scene, const Surface& surface, const Vector& outgoing, RandomStream& random);
+/// draw_connection() and its shadow ray; empty when it is blocked.
+std::optional<ConnectedLight> connect_to_light(const Scene& scene, const Surface& surface, const Vector& outgoing,
+                                               RandomStream& random);
 
 }  // namespace photonlab

@@ -1,5 +1,7 @@
 #include "transport/photons.h"
 
+#include <utility>
+
 #include "core/parallel.h"
 #include "core/random.h"
 #include "scene/emitter.h"
@@ -8,7 +10,9 @@ namespace photonlab {
 
 namespace {
 
-constexpr std::size_t block_size = 1024;    // paths
+constexpr std::size_t block_size = 256;  // paths that a thread traces at a time
+constexpr std::size_t blocks_per_round =
+    128;                                    // then joined: their photons are still in the cache, their memory is reused
 constexpr std::uint32_t edge_cap = 10'000;  // ends light that is trapped; what it cuts is counted
 constexpr float highest_survival = 0.99f;   // so that a path among white surfaces ends, too
 
@@ -80,6 +84,25 @@ void trace_path(const Scene& scene, const PhotonSettings& settings, std::uint64_
     }
 }
 
+/// Photons of a whole pass of `blocks` blocks, when its first round found these; a little more, since memory that is
+/// never touched costs nothing and growing costs a copy.
+std::size_t expected_photons(const std::vector<PhotonPass>& first_round, std::size_t blocks) {
+    std::size_t found = 0;
+    for (const PhotonPass& block : first_round) found += block.photons.size();
+    if (first_round.size() == blocks) return found;
+    const double share = static_cast<double>(blocks) / static_cast<double>(first_round.size());
+    return static_cast<std::size_t>(1.05 * share * static_cast<double>(found));
+}
+
+/// Empties the block but keeps its memory.
+void move_to_end(PhotonPass& pass, PhotonPass& block) {
+    pass.photons.insert(pass.photons.end(), block.photons.begin(), block.photons.end());
+    block.photons.clear();
+    pass.paths_cut += std::exchange(block.paths_cut, 0);
+    pass.power_cut += std::exchange(block.power_cut, 0.0);
+    pass.nonfinite += std::exchange(block.nonfinite, 0);
+}
+
 }  // namespace
 
 PhotonPass trace_photons(const Scene& scene, const PhotonSettings& settings, std::uint64_t pass, int threads) {
@@ -87,25 +110,17 @@ PhotonPass trace_photons(const Scene& scene, const PhotonSettings& settings, std
     result.paths_emitted = settings.paths;
     if (scene.emitters.empty()) return result;
 
-    std::vector<PhotonPass> blocks(block_count(settings.paths, block_size));
-    parallel_for(blocks.size(), threads, [&](std::size_t block) {
-        const BlockRange range = block_range(block, settings.paths, block_size);
-        std::vector<Photon>& photons = blocks[block].photons;
-        photons.reserve(range.end - range.begin);
-        for (std::size_t index = range.begin; index < range.end; ++index)
-            trace_path(scene, settings, pass, index, blocks[block]);
-        photons.shrink_to_fit();
-    });
-
-    std::size_t stored = 0;
-    for (const PhotonPass& block : blocks) stored += block.photons.size();
-    result.photons.reserve(stored);
-    for (PhotonPass& block : blocks) {
-        result.photons.insert(result.photons.end(), block.photons.begin(), block.photons.end());
-        block.photons = {};
-        result.paths_cut += block.paths_cut;
-        result.power_cut += block.power_cut;
-        result.nonfinite += block.nonfinite;
+    const std::size_t blocks = block_count(settings.paths, block_size);
+    std::vector<PhotonPass> round(std::min(blocks, blocks_per_round));
+    for (std::size_t first = 0; first < blocks; first += round.size()) {
+        const std::size_t in_round = std::min(round.size(), blocks - first);
+        parallel_for(in_round, threads, [&](std::size_t slot) {
+            const BlockRange range = block_range(first + slot, settings.paths, block_size);
+            for (std::size_t index = range.begin; index < range.end; ++index)
+                trace_path(scene, settings, pass, index, round[slot]);
+        });
+        if (first == 0) result.photons.reserve(expected_photons(round, blocks));
+        for (std::size_t slot = 0; slot < in_round; ++slot) move_to_end(result, round[slot]);
     }
     return result;
 }

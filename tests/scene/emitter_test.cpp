@@ -188,7 +188,7 @@ TEST(SampleDirect, DirectDensityAgreesWithWhatWasDrawn) {
             }
             // The ray began a little above the receiver, which matters as the distance to the light over the step.
             EXPECT_NEAR(direct_density(scene, receiver, drawn->direction, *hit) / drawn->density, 1.0, 2e-3);
-            EXPECT_FALSE(is_occluded(scene, start, drawn->position));
+            EXPECT_FALSE(is_occluded(scene, {start, drawn->position}));
             EXPECT_DOUBLE_EQ(emitted_radiance(scene, *hit, -drawn->direction).x, 1.0);
         }
         EXPECT_LT(missed, 20);
@@ -234,7 +234,7 @@ TEST(SampleDirect, ThePointDrawnOnATinySphereIsOnTheReceiversSide) {
             // The point was moved off the sphere by more than a rounding, so its side is sure.
             ASSERT_LT((light->position - centre).dot(light->direction), 0.0f) << radius;
             ASSERT_FALSE(
-                is_occluded(scene, offset_from_surface(receiver, {0, 0, 1}, light->direction), light->position))
+                is_occluded(scene, {offset_from_surface(receiver, {0, 0, 1}, light->direction), light->position}))
                 << radius;
         }
     }

@@ -220,10 +220,10 @@ TEST(IsOccluded, SeesWhatLiesBetweenAndNothingBeyond) {
          {Geometry(square({0, 0, 0}, {1, 0, 0}, {0, 1, 0})), Geometry(DiskDescription{{0, 0, 0}, {0, 0, 1}, 1.0}),
           Geometry(SphereDescription{{0, 0, 0}, 1.0, false})}) {
         const Scene scene = build_scene(describe({shape(wall)}));
-        EXPECT_TRUE(is_occluded(scene, {0.1f, 0, 2}, {0.1f, 0, -2}));
-        EXPECT_FALSE(is_occluded(scene, {0.1f, 0, 2}, {0.1f, 0, 0.6f}));
-        EXPECT_FALSE(is_occluded(scene, {0.1f, 0, 2}, {2, 0, 2}));
-        EXPECT_FALSE(is_occluded(scene, {0.1f, 0, 2}, {0.1f, 0, 2}));
+        EXPECT_TRUE(is_occluded(scene, {{0.1f, 0, 2}, {0.1f, 0, -2}}));
+        EXPECT_FALSE(is_occluded(scene, {{0.1f, 0, 2}, {0.1f, 0, 0.6f}}));
+        EXPECT_FALSE(is_occluded(scene, {{0.1f, 0, 2}, {2, 0, 2}}));
+        EXPECT_FALSE(is_occluded(scene, {{0.1f, 0, 2}, {0.1f, 0, 2}}));
     }
 }
 
@@ -234,8 +234,8 @@ TEST(IsOccluded, PointsMovedOffTwoWallsThatFaceEachOtherSeeEachOther) {
     for (int i = 0; i < 20'000; ++i) {
         const Vector below(random.next() - 0.5f, random.next() - 0.5f, -0.5f);
         const Vector above(random.next() - 0.5f, random.next() - 0.5f, 0.5f);
-        EXPECT_FALSE(is_occluded(scene, offset_from_surface(below, {0, 0, 1}, above - below),
-                                 offset_from_surface(above, {0, 0, -1}, below - above)));
+        EXPECT_FALSE(is_occluded(scene, {offset_from_surface(below, {0, 0, 1}, above - below),
+                                 offset_from_surface(above, {0, 0, -1}, below - above)}));
     }
 }
 
@@ -369,7 +369,7 @@ TEST(BuildScene, WithoutSurfacesTheLightsMakeTheBoxAndWithoutLightsThereIsNone) 
     const Scene nothing = build_scene(describe({}));
     EXPECT_EQ(nothing.unit_length, 1.0);
     EXPECT_FALSE(intersect(nothing, {{0, 0, 0}, {0, 0, 1}}));
-    EXPECT_FALSE(is_occluded(nothing, {0, 0, 0}, {0, 0, 1}));
+    EXPECT_FALSE(is_occluded(nothing, {{0, 0, 0}, {0, 0, 1}}));
 }
 
 TEST(BuildScene, AMeshWithoutTrianglesIsHarmless) {

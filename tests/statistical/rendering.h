@@ -45,9 +45,10 @@ struct MethodWithPhotons {
 
     void run_pass(std::uint64_t pass, PhotonPass traced) {
         photons.begin_pass(std::move(traced));
-        photons.index_pass();
         photons.add_pass();
+        photons.index_pass();
         integrator->run_pass(pass, photons, no_listener);
+        photons.end_pass();
     }
 
     Image estimate() {

@@ -60,7 +60,7 @@ bool sees_whole_lamp(const Scene& scene, const HitPoint& point, const MeshDescri
                                             (lamp.positions[3] - lamp.positions[0]) * (j / 4.0) -
                                             VectorD(0.0, 1e-3, 0.0);
                     const Vector to((on_lamp - scene.centre) / scene.unit_length);
-                    if (point.normal.dot(to - from) <= 0.0f || is_occluded(scene, from, to)) return false;
+                    if (point.normal.dot(to - from) <= 0.0f || is_occluded(scene, {from, to})) return false;
                 }
         }
     return true;

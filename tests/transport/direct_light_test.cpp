@@ -17,7 +17,8 @@ ColorD sample_once(const Scene& scene, std::uint64_t seed = 1) {
     EXPECT_EQ(hit_points.points.size(), 1u);
     RandomStream random(seed, RandomPurpose::Test, 0, 0);
     const HitPoint& point = hit_points.points.at(0);
-    return sample_direct_light(scene, surface_at(scene, point), point.outgoing, random);
+    const auto light = connect_to_light(scene, surface_at(scene, point), point.outgoing, random);
+    return light ? light->contribution : ColorD(0.0);
 }
 
 TEST(DirectLight, OfAPointLightHasItsCosineAndSquaredDistance) {
