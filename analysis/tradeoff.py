@@ -1,7 +1,8 @@
 """What each setting buys and costs: an experiment with a method that is named `default` and others that change one setting of it
-each is turned into a table, a list in words and a figure per scene.
+each is turned into a table, a list in words and a figure per scene. There may be several defaults (`default-nearest`, say): a
+method is compared with the one that it differs least from.
 
-The knobs are found from the records: they are the settings in which a method differs from the default, less what follows from
+The knobs are found from the records: they are the settings in which a method differs from its default, less what follows from
 another one (hit points from samples a pixel, say). Error is the RMSE of the last pass, the root of the mean over seeds of the
 unbiased MSE of the whole picture; time is the mean over seeds of its seconds. Ratios to the default are taken over the seeds that
 both have, which are the same photons where the setting leaves them the same. Standard errors are those of the jackknife over
@@ -36,8 +37,10 @@ FOLLOWS = {"radius_rule": ["radius_initial"], "caustic_radius": ["radius_initial
            "hit_points": ["samples_per_pixel", "width", "height", "branch_cutoff"],
            "radius_initial": ["samples_per_pixel", "width", "height", "branch_cutoff"]}
 RATIOS = ["error", "time"]
-COLUMNS = ["scene", "point", "knob", "value", "default_value", "seeds", "pass", "rmse", "rmse_error", "seconds", "seconds_error",
+COLUMNS = ["scene", "point", "default", "knob", "value", "default_value", "seeds", "pass", "rmse", "rmse_error", "seconds", "seconds_error",
            *(f"{name}_ratio{part}" for name in RATIOS for part in ["", "_low", "_high"]), "pareto"]
+BLACK = {"color": "black", "markersize": 8}
+BLACK_MARKERS = [{"marker": "o"}, {"marker": "s"}, {"marker": "^"}]
 FRONT = {"color": "#888888", "linewidth": 3, "alpha": 0.5, "zorder": 1}
 
 
@@ -91,24 +94,27 @@ def table_of(file, scene, rows, columns):
     """Rows of the table of one scene, the default first, then by knob and value."""
     rows = rows[(rows["component"] == "total") & rows["mse"].notna()]
     names = rows["run"].map(point_of).str.removeprefix(f"{scene}_")
-    if DEFAULT not in set(names):
-        raise records.RecordError(f"{file}: scene {scene} has no method named {DEFAULT} with errors; expected one to compare with")
     error = records.error_column(rows)
     points = {name: last_rows(own) for name, own in rows.groupby(names, sort=False)}
-    default = points[DEFAULT]
+    defaults = [name for name in points if name.startswith(DEFAULT)]
+    if not defaults:
+        raise records.RecordError(f"{file}: scene {scene} has no method named {DEFAULT} with errors; expected one to compare with")
     table = []
     for name, own in points.items():
+        compared = name if name in defaults else min(
+            defaults, key=lambda other: len(knobs_of(own.iloc[0], points[other].iloc[0], columns)))
+        default = points[compared]
         knobs = knobs_of(own.iloc[0], default.iloc[0], columns)
         seeds = own.index.intersection(default.index)
         rmse, seconds = jackknife(root_of_mean, own[error].to_numpy()), jackknife(numpy.mean, own["seconds"].to_numpy())
         ratios = {"error": (1.0, 1.0, 1.0), "time": (1.0, 1.0, 1.0)}
-        if name != DEFAULT:
+        if name != compared:
             if not len(seeds):
-                raise records.RecordError(f"{file}: {scene}_{name} has no seed in common with {scene}_{DEFAULT}")
+                raise records.RecordError(f"{file}: {scene}_{name} has no seed in common with {scene}_{compared}")
             ratios = {"error": ratio_of(own.loc[seeds, error].to_numpy(), default.loc[seeds, error].to_numpy(), 0.5),
                       "time": ratio_of(own.loc[seeds, "seconds"].to_numpy(), default.loc[seeds, "seconds"].to_numpy(), 1.0)}
         table.append({
-            "scene": scene, "point": name, "knob": ", ".join(knobs), "value": ", ".join(value for value, _ in knobs.values()),
+            "scene": scene, "point": name, "default": compared, "knob": ", ".join(knobs), "value": ", ".join(value for value, _ in knobs.values()),
             "default_value": ", ".join(before for _, before in knobs.values()), "seeds": len(seeds), "pass": int(own["pass"].iloc[0]),
             "rmse": rmse[0], "rmse_error": rmse[1], "seconds": seconds[0], "seconds_error": seconds[1],
             **{f"{ratio}_ratio{part}": number for ratio in RATIOS for part, number in zip(["", "_low", "_high"], ratios[ratio])},
@@ -117,7 +123,12 @@ def table_of(file, scene, rows, columns):
         row["pareto"] = "yes" if row["rmse"] > 0 and not any(
             other["seconds"] <= row["seconds"] and other["rmse"] <= row["rmse"] and
             (other["seconds"], other["rmse"]) != (row["seconds"], row["rmse"]) for other in table) else ""
-    return sorted(table, key=lambda row: (row["point"] != DEFAULT, row["knob"], records.as_number(row["value"]) or 0.0, row["value"]))
+    return sorted(table, key=lambda row: (defaults.index(row["default"]), not is_default(row), row["knob"],
+                                          records.as_number(row["value"]) or 0.0, row["value"]))
+
+
+def is_default(row):
+    return row["point"] == row["default"]
 
 
 def ratio_text(row, name):
@@ -142,16 +153,18 @@ def sentence(row):
 
 
 def markdown(tables):
-    """All scenes: the default in numbers, then a line a method; those on the Pareto front are bold."""
+    """All scenes: each default in numbers, then a line a method; those on the Pareto front are bold."""
     parts = ["# What each setting buys and costs", "", "RMSE and seconds of the last pass; ratios to the default with 95% intervals "
              "over paired seeds. Bold: on the Pareto front of its scene (nothing is both faster and more accurate).", ""]
     for table in tables:
-        default = table[0]
-        count = default["seeds"]
-        parts += [f"## {default['scene']}", "", f"Default: RMSE {style.two_digits(default['rmse'])} after "
-                  f"{style.two_digits(default['seconds'])} s, {count} seed{'' if count == 1 else 's'}"
-                  f"{'; on the front' if default['pareto'] else ''}.", ""]
-        parts += [f"- **{sentence(row)}**" if row["pareto"] else f"- {sentence(row)}" for row in table[1:]]
+        parts.append(f"## {table[0]['scene']}")
+        for row in table:
+            if is_default(row):
+                count = row["seeds"]
+                parts += ["", f"`{row['point']}`: RMSE {style.two_digits(row['rmse'])} after {style.two_digits(row['seconds'])} s, "
+                          f"{count} seed{'' if count == 1 else 's'}{'; on the front' if row['pareto'] else ''}.", ""]
+            else:
+                parts.append(f"- **{sentence(row)}**" if row["pareto"] else f"- {sentence(row)}")
         parts.append("")
     return "\n".join(parts)
 
@@ -162,31 +175,34 @@ def draw_scene(table):
     if not table:
         return None
     style.use()
-    default = next((row for row in table if row["point"] == DEFAULT), None)
-    knobs = list(dict.fromkeys(row["knob"] or row["point"] for row in table if row is not default))
+    defaults = {row["point"]: row for row in table if is_default(row)}
+    knobs = list(dict.fromkeys((row["default"], row["knob"] or row["point"]) for row in table if not is_default(row)))
     looks = {knob: {"color": style.COLOURS[place % len(style.COLOURS)], "marker": style.MARKERS[place % len(style.MARKERS)],
-                    "linewidth": 0.8} for place, knob in enumerate(knobs)}
-    names = {knob: ", ".join(records.SETTING_NAMES.get(column, column.replace("_", " ")) for column in knob.split(", "))
+                    "linestyle": "-" if knob[0] == DEFAULT else "--", "linewidth": 0.8} for place, knob in enumerate(knobs)}
+    names = {knob: ", ".join(records.SETTING_NAMES.get(column, column.replace("_", " ")) for column in knob[1].split(", "))
              for knob in knobs}
-    handles = [lines.Line2D([], [], label=names[knob], **looks[knob]) for knob in knobs]
-    handles += [lines.Line2D([], [], label="default", color="black", marker="o", linestyle="none", markersize=8),
-                lines.Line2D([], [], label="Pareto front", **FRONT)]
+    handles = [lines.Line2D([], [], label=names[knob] + (f" ({knob[0]})" if len(defaults) > 1 and knob[0] != DEFAULT else ""),
+                            **looks[knob]) for knob in knobs]
+    handles += [lines.Line2D([], [], label=name, linestyle="none", **BLACK, **BLACK_MARKERS[place % len(BLACK_MARKERS)])
+                for place, name in enumerate(defaults)]
+    handles.append(lines.Line2D([], [], label="Pareto front", **FRONT))
     figure, [[axes]] = style.panels_over_legend(1, 1, handles, "Bars: standard errors over seeds. A line joins the values of one "
-                                                "setting; the rest is as in the default.", panel_height=3.4)
+                                                "setting; the rest is as in its default.", panel_height=3.4)
     for knob in knobs:
-        of_knob = [row for row in table if (row["knob"] or row["point"]) == knob]
-        line = sorted(of_knob + ([default] if default else []),
-                      key=lambda row: records.as_number(row["value"] if row is not default else of_knob[0]["default_value"]) or 0.0)
-        axes.plot([row["seconds"] for row in line], [row["rmse"] for row in line], color=looks[knob]["color"], linewidth=0.8)
+        of_knob = [row for row in table if not is_default(row) and (row["default"], row["knob"] or row["point"]) == knob]
+        line = sorted(of_knob + [defaults[name] for name in [knob[0]] if name in defaults],
+                      key=lambda row: records.as_number(of_knob[0]["default_value"] if is_default(row) else row["value"]) or 0.0)
+        axes.plot([row["seconds"] for row in line], [row["rmse"] for row in line],
+                  **{**looks[knob], "marker": "none"})
         axes.errorbar([row["seconds"] for row in of_knob], [row["rmse"] for row in of_knob],
                       xerr=[numpy.nan_to_num(row["seconds_error"]) for row in of_knob],
                       yerr=[numpy.nan_to_num(row["rmse_error"]) for row in of_knob], **{**looks[knob], "linestyle": "none"})
         for row in of_knob:
             axes.annotate(shown_value(row["value"]), (row["seconds"], row["rmse"]), (4, 4), textcoords="offset points", fontsize=7,
                           color=looks[knob]["color"])
-    if default:
-        axes.errorbar(default["seconds"], default["rmse"], xerr=numpy.nan_to_num(default["seconds_error"]),
-                      yerr=numpy.nan_to_num(default["rmse_error"]), color="black", marker="o", markersize=8, zorder=4)
+    for place, row in enumerate(defaults.values()):
+        axes.errorbar(row["seconds"], row["rmse"], xerr=numpy.nan_to_num(row["seconds_error"]),
+                      yerr=numpy.nan_to_num(row["rmse_error"]), zorder=4, **BLACK, **BLACK_MARKERS[place % len(BLACK_MARKERS)])
     front = sorted((row for row in table if row["pareto"]), key=lambda row: row["seconds"])
     axes.plot([row["seconds"] for row in front], [row["rmse"] for row in front], **FRONT)
     for axis, column in [(axes.xaxis, "seconds"), (axes.yaxis, "rmse")]:

@@ -97,6 +97,19 @@ class Tradeoff(unittest.TestCase):
         self.assertIn("- **α 0.9 for 0.7", words)
         self.assertIn("- kernel cone for disc", words)
 
+    def test_of_several_defaults_a_method_has_the_nearest(self):
+        nearest = {"integrator": "photonmapper", "mode": "nearest", "schedule": "", "alpha": "", "k": "120", "max_radius": "40"}
+        self.write({**self.methods(), "default-nearest": (nearest, self.noisy(1e-4, 0.1), self.noisy(8.0, 0.05)),
+                    "k": ({**nearest, "k": "60"}, self.noisy(4e-4, 0.1), self.noisy(4.0, 0.05))})
+        table, words, _ = self.tables()
+        self.assertEqual([(name, row["default"]) for name, row in table.items()],
+                         [("default", "default"), ("more", "default"), ("eps", "default"), ("worse", "default"),
+                          ("default-nearest", "default-nearest"), ("k", "default-nearest")])
+        self.assertEqual((table["k"]["knob"], table["k"]["default_value"]), ("k", "120"))
+        self.assertAlmostEqual(float(table["k"]["error_ratio"]), 2.0, places=9)
+        self.assertIn("`default-nearest`: RMSE 0.01", words)
+        self.assertIn("- k 60 for 120: error ×2.00 (2.00 to 2.00), time ×0.50 (0.50 to 0.50)", words)
+
     def test_what_follows_from_a_knob_is_none(self):
         self.write({"default": ({}, self.noisy(4e-4, 0.1), self.noisy(2.0, 0.05)),
                     "given": ({"radius_rule": "given", "radius_initial": "4", "caustic_radius": "4"}, self.noisy(4e-4, 0.1),
