@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/random.h"
+#include "core/state_archive.h"
 #include "image/image.h"
 #include "integrators/photon_supply.h"
 #include "integrators/settings.h"
@@ -33,6 +34,16 @@ struct IntegratorReport {
     std::optional<double> radius_mean;
     std::optional<double> radius_max;
 };
+
+inline void exchange(StateArchive& archive, IntegratorReport& report) {
+    archive.exchange(report.photons_gathered);
+    archive.exchange(report.map_bytes);
+    archive.exchange(report.hit_point_bytes);
+    archive.exchange(report.nonfinite);
+    archive.exchange(report.radius_min);
+    archive.exchange(report.radius_mean);
+    archive.exchange(report.radius_max);
+}
 
 /// What a method holds at one hit point after its last gather.
 struct GatherState {
@@ -68,6 +79,10 @@ public:
     virtual Image estimate(const PhotonSupply& photons, const StageListener& enter) = 0;
 
     virtual IntegratorReport report() const = 0;
+
+    /// Writes or reads everything that the passes so far left here, between two passes. One made from the same settings
+    /// and context that reads it goes on as this one would have, to the bit; photons are not in it.
+    virtual void exchange(StateArchive& archive) = 0;
 
     /// Of the hit point with this index; empty for a method that gathers nothing.
     virtual std::optional<GatherState> gather_state(std::size_t hit_point) const {

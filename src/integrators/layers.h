@@ -34,6 +34,12 @@ public:
     /// The layer: mean over the passes so far. Before the first pass, one sampling made for this call alone.
     std::vector<Color> layer() const;
 
+    /// See Integrator::exchange().
+    void exchange(StateArchive& archive) {
+        archive.exchange(passes_);
+        archive.exchange_as_many(sums_);
+    }
+
     std::uint64_t bytes() const { return sums_.size() * sizeof(ColorD); }
 
 private:

@@ -118,6 +118,11 @@ public:
         return report;
     }
 
+    void exchange(StateArchive& archive) override {
+        archive.exchange(passes_);
+        archive.exchange_as_many(sums_);
+    }
+
 private:
     void add_paths(std::uint64_t pass, std::vector<PathSample>& sums) const {
         const std::vector<HitPoint>& points = context_.hit_points.points;

@@ -83,6 +83,12 @@ public:
         return state;
     }
 
+    /// What was gathered is not kept: every estimate gathers anew.
+    void exchange(StateArchive& archive) override {
+        photonlab::exchange(archive, report_);
+        direct_.exchange(archive);
+    }
+
 private:
     /// Mitsuba 0.6's default for its global map, in shares of the scene's bounding radius.
     static constexpr double default_share_of_scene = 0.05;

@@ -85,6 +85,13 @@ public:
         return state;
     }
 
+    void exchange(StateArchive& archive) override {
+        archive.exchange(passes_);
+        archive.exchange_as_many(statistics_);
+        photonlab::exchange(archive, report_);
+        direct_.exchange(archive);
+    }
+
 private:
     /// Shrinks the radii as the passes before `pass` would have. Only a schedule that depends on the pass alone can.
     void begin_at(std::uint64_t pass) {

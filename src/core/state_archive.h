@@ -1,0 +1,95 @@
+// Writing and reading the state of something in one function: `exchange(StateArchive&)` names each value once, and
+// whether the archive writes or reads decides which way it goes, so that what is saved is what is restored.
+//
+// Values are stored as they lie in memory, for the machine and the program that wrote them; whoever keeps an archive
+// says of what it is (experiment/checkpoint.h).
+
+#pragma once
+
+#include <cstdint>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "core/error.h"
+#include "core/hash.h"
+
+namespace photonlab {
+
+/// A number, or a struct of numbers without gaps.
+template <typename Value>
+concept PlainValue = std::is_standard_layout_v<Value> && std::is_trivially_destructible_v<Value> &&
+                     !std::is_pointer_v<Value>;
+
+class StateArchive {
+public:
+    /// Writes to a stream, whose failures are its owner's to notice.
+    explicit StateArchive(std::ostream& output) : output_(&output) {}
+
+    /// Reads `bytes` bytes of a stream.
+    StateArchive(std::istream& input, std::uint64_t bytes) : input_(&input), left_(bytes) {}
+
+    bool reads() const { return input_ != nullptr; }
+
+    /// Writes the value, or replaces it by what was written. Reading throws InputError when the archive ends before.
+    template <PlainValue Value>
+    void exchange(Value& value) {
+        move_bytes(&value, sizeof(Value));
+    }
+
+    template <typename Value>
+    void exchange(std::optional<Value>& value) {
+        bool is_there = value.has_value();
+        exchange(is_there);
+        if (!is_there) {
+            value.reset();
+            return;
+        }
+        if (!value) value.emplace();
+        exchange(*value);
+    }
+
+    void exchange(std::string& text) {
+        text.resize(exchange_count(text.size(), 1));
+        move_bytes(text.data(), text.size());
+    }
+
+    template <PlainValue Value>
+    void exchange(std::vector<Value>& values) {
+        values.resize(exchange_count(values.size(), sizeof(Value)));
+        move_bytes(values.data(), values.size() * sizeof(Value));
+    }
+
+    /// The same for as many values as there are already: reading throws InputError when another number was written.
+    template <PlainValue Value>
+    void exchange_as_many(std::vector<Value>& values) {
+        const std::uint64_t count = exchange_count(values.size(), sizeof(Value));
+        if (count != values.size())
+            throw InputError("expected " + std::to_string(values.size()) + " values, got " + std::to_string(count));
+        move_bytes(values.data(), values.size() * sizeof(Value));
+    }
+
+    /// Each element by `exchange_one(archive, element)`; for elements that are not plain.
+    template <typename Value, typename ExchangeOne>
+    void exchange_each(std::vector<Value>& values, const ExchangeOne& exchange_one) {
+        values.resize(exchange_count(values.size(), 1));
+        for (Value& value : values) exchange_one(*this, value);
+    }
+
+    std::uint64_t bytes_left() const { return left_; }  ///< to be read
+    std::string hash() const { return hash_.text(); }   ///< of all bytes that were written or read
+
+private:
+    /// How many elements follow; when reading, no more than the bytes that are left can hold.
+    std::uint64_t exchange_count(std::uint64_t count, std::uint64_t bytes_each);
+    void move_bytes(void* bytes, std::uint64_t count);
+
+    std::ostream* output_ = nullptr;
+    std::istream* input_ = nullptr;
+    std::uint64_t left_ = 0;
+    RunningHash hash_;
+};
+
+}  // namespace photonlab
