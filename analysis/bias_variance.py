@@ -2,8 +2,8 @@
 row for the whole image and for each named region, a line per method. Read by it, RESULTS_DIR/decomposition.csv, is written by
 decomposition.py.
 
-Bands are 1.96 standard errors to both sides: 95% where errors are Gaussian. Thin dotted lines are what theory predicts
-for these passes (fits.py), through the measured value at the window's first pass. What is not above two standard errors
+Bands are 1.96 standard errors to both sides: 95% where errors are Gaussian. Thin lines are what theory predicts for these passes
+(fits.py), through the measured value at the window's first pass: dotted where light is smooth, dashed at edges. What is not above two standard errors
 is not resolved: a logarithmic axis could only show the half of it that came out high, so it is marked at the bottom.
 
 Where the reference has it, gathered light is drawn, which is what theory is about; otherwise the whole picture. Seconds are
@@ -35,7 +35,8 @@ AXES = {"passes": ("pass", "pass"), "photons": ("paths_emitted", "light paths em
         "seconds": ("seconds", "time of all passes so far (s)")}    # column and title by what is drawn against
 COMPONENT_TITLES = {"gathered": "gathered light", "total": "whole picture"}
 BAND = 1.96    # standard errors
-THEORY_LINE = {"linewidth": 0.7, "linestyle": (0, (1, 1.5)), "zorder": 1.5}
+THEORY_LINES = {"squared_bias": {"linewidth": 0.7, "linestyle": (0, (1, 1.5)), "zorder": 1.5},
+                "edge": {"linewidth": 0.7, "linestyle": (0, (6, 3)), "zorder": 1.5}}    # by what squared bias is predicted to be
 
 
 def read_decomposition(results):
@@ -77,23 +78,32 @@ def places_of(rows, passes, against):
 
 
 def theory_of(recorded_rows, rows, component, region):
-    """(passes, {quantity: values}) that theory predicts over the window; `rows` are a point's of decomposition.csv."""
+    """(passes, {quantity: {kind: values}}) that theory predicts over the window, kinds as in THEORY_LINES; `rows` are a point's
+    of decomposition.csv."""
     first, last = fits.default_window(rows["pass"].astype(int))
     predicted = fits.predictions(recorded_rows, component, last)
     at_first = rows[(rows["pass"] == first) & (rows["region"] == region) & (rows["component"] == component)]
     # Of the whole picture with direct light by shadow rays it is a sum, which fits.py predicts and this does not draw.
     is_mixed = component == "total" and (rows["component"] == "direct").any()
-    if predicted is None or at_first.empty or is_mixed:
+    if not predicted or at_first.empty or is_mixed:
         return [], {}
     measured = at_first.iloc[0]
     passes = numpy.arange(first, last + 1)
-    values = {}
-    for quantity, shape in zip(["variance", "squared_bias"], [predicted[0], None if predicted[1] is None else predicted[1] ** 2]):
+
+    def through_measured(quantity, shape):
         # A line through a value that is not resolved would start anywhere.
-        if shape is not None and measured[quantity] > fits.RESOLVED * measured[f"{quantity}_error"]:
-            values[quantity] = measured[quantity] * shape[passes - 1] / shape[first - 1]
-    if len(values) == 2:
-        values["mse"] = values["variance"] + values["squared_bias"]
+        if shape is None or not measured[quantity] > fits.RESOLVED * measured[f"{quantity}_error"]:
+            return None
+        return measured[quantity] * shape[passes - 1] / shape[first - 1]
+
+    variance = through_measured("variance", predicted["variance"])
+    values = {"variance": {} if variance is None else {"squared_bias": variance}, "squared_bias": {}, "mse": {}}
+    for kind in THEORY_LINES:
+        squared = through_measured("squared_bias", predicted.get(kind))
+        if squared is not None:
+            values["squared_bias"][kind] = squared
+            if variance is not None:
+                values["mse"][kind] = variance + squared
     return passes, values
 
 
@@ -113,8 +123,9 @@ def draw_panel(axes, curves, theories, styles, limits, shape):
             axes.plot(places[~resolved], [0.03 + 0.045 * methods_below] * int((~resolved).sum()), transform=at_bottom,
                       color=look["color"], **BELOW_MARK)
             methods_below += 1
-    for label, (places, values) in theories.items():
-        axes.plot(places, shape(values), color=styles[label]["color"], **THEORY_LINE)
+    for label, (places, kinds) in theories.items():
+        for kind, values in kinds.items():
+            axes.plot(places, shape(values), color=styles[label]["color"], **THEORY_LINES[kind])
     style.logarithmic(axes.yaxis, *limits)
 
 
@@ -135,7 +146,7 @@ def notes(rows, component, any_theory, against):
     text = [f"{COMPONENT_TITLES[component].capitalize()}, {seeds:.0f} seeds in {groups:.0f} groups; per pixel and channel, "
             "of one seed's image. Band: 1.96 standard errors (jackknife over groups)."]
     if any_theory:
-        text.append("Dotted: predicted for these passes, through the measured value at the window's first.")
+        text.append("Thin lines: predicted for these passes, through the measured value at the window's first.")
     if rows["mse"].notna().any() and (rows["reference_floor"] == "").any():
         text.append("The reference has no second half: its own noise is in squared bias and MSE.")
     if (rows["direct"] == "photons").any():
@@ -168,7 +179,7 @@ def draw_scene(recorded, rows, labels, against="passes", roots=False):
                     curve = curve_of(drawn, quantity, against)
                     if len(curve[0]):
                         curves[quantity][label_of[point]] = curve
-                if quantity in predicted and label_of[point] in curves[quantity]:
+                if predicted.get(quantity) and label_of[point] in curves[quantity]:
                     theories[quantity][label_of[point]] = (places_of(of_point, passes, against), predicted[quantity])
         limits = vertical_range([curve for of_quantity in curves.values() for curve in of_quantity.values()], shape)
         if limits:
@@ -185,7 +196,8 @@ def draw_scene(recorded, rows, labels, against="passes", roots=False):
     drawn_labels = {label for _, curves, _, _ in lines_of_figure for of_quantity in curves.values() for label in of_quantity}
     handles = [lines.Line2D([], [], label=label, **styles[label]) for label in labels if label in drawn_labels]
     if any_theory:
-        handles.append(lines.Line2D([], [], label="theory", color="#555555", **THEORY_LINE))
+        handles += [lines.Line2D([], [], label=label, color="#555555", **THEORY_LINES[kind])
+                    for kind, label in [("squared_bias", "theory, smooth"), ("edge", "theory, at edges")]]
     if any_below:
         handles.append(lines.Line2D([], [], label="below resolution", color="#555555", **BELOW_MARK))
     caption = notes(rows[rows["component"] == component], component, any_theory, against)

@@ -11,10 +11,12 @@ Student's distribution with one degree less than groups. Beside it stand
                  the asymptote: variance_n / variance_1 = n^-2 sum r_1^2 / r_i^2, bias_n / bias_1 = mean of r_i^2 / r_1^2, with
                  Knaus and Zwicker's radii in closed form, and with Hachisuka's as they were recorded; MSE is their sum, with
                  the measured shares at the window's first pass
+    predicted_edge   the same where all bias is that of a straight edge, at which a disc of radius r at the distance t r
+                 misses the share (acos t - t sqrt(1 - t^2)) / pi of its photons
 
-and a verdict: "agrees" when the interval holds the prediction, "differs" when it does not, "cannot tell" when a quantity is not
-above two standard errors at every pass of the window, or the interval is wider than 1. Most pictures have edges: a squared bias
-that "differs" from the smooth prediction is what theory says of them.
+and a verdict: "agrees" when the interval holds `predicted`, "agrees at edges" when it holds `predicted_edge`, "between" when it
+lies between the two (pictures have both smooth walls and edges), otherwise "differs"; "cannot tell" when a quantity is not above
+two standard errors at every pass of the window, or the interval is wider than 1.
 
 Which alpha has the least MSE is told with the probability of each, by drawing groups of seeds anew with replacement, the same
 groups for all alphas, and counting who wins. With a seed a group MSE is a plain mean over the groups, whatever share of it is
@@ -42,11 +44,12 @@ except ImportError as error:
 WIDEST = 1.0      # interval of a slope that says anything
 RESOLVED = 2.0    # standard errors above 0
 FIT_COLUMNS = ["experiment", "scene", "point", *records.SETTINGS, "component", "region", "quantity", "first_pass",
-               "last_pass", "passes", "seeds", "slope", "low", "high", "asymptote", "edge", "predicted", "verdict"]
+               "last_pass", "passes", "seeds", "slope", "low", "high", "asymptote", "edge", "predicted", "predicted_edge", "verdict"]
 FAMILY = [column for column in records.SETTINGS if column != "alpha"]    # what alphas that are compared have in common
 BEST_COLUMNS = ["experiment", "scene", *FAMILY, "component", "region", "pass", "paths_emitted", "best_alpha", "probability",
                 "candidates", "mse", "runner_up", "difference", "difference_error", "verdict"]
 DRAWS = 2000       # of groups of seeds
+EDGE_STEPS = 2000  # of the integral over the distance to an edge
 EXCLUDED = 0.05    # an alpha that is best with less than that is no candidate
 
 
@@ -85,37 +88,55 @@ def recorded_radii(rows, last):
                      - 2 * math.log(means.iloc[0]))
 
 
+def squared_bias_at_edges(squared):
+    """Squared bias along a straight edge, integrated over the distance to it, after each of the passes whose r_i^2 / r_1^2 are
+    given; up to a factor that is common to all. [Share of a disc beyond a chord; each pass has an equal part in the mean]"""
+    radii = numpy.sqrt(squared)
+    distances = (numpy.arange(EDGE_STEPS) + 0.5) / EDGE_STEPS * radii.max()
+    mean, found = numpy.zeros(EDGE_STEPS), numpy.empty(len(radii))
+    for place, radius in enumerate(radii):
+        t = numpy.minimum(1, distances / radius)
+        missed = (numpy.arccos(t) - t * numpy.sqrt(1 - t * t)) / math.pi
+        mean += (missed - mean) / (place + 1)
+        found[place] = (mean ** 2).mean()
+    return found
+
+
 def is_sampled(first, component):
     """True for light that is a plain Monte Carlo mean: path tracing, and direct light by shadow rays."""
     return first["integrator"] == "path" or (component == "direct" and first["direct"] == "sampled")
 
 
 def predictions(rows, component, last):
-    """(variance_n / variance_1, bias_n / bias_1) for n = 1 to last; None for methods without a prediction. Those of "total"
-    are of its gathered light; with_direct_light() adds the rest."""
+    """{"variance", "squared_bias", "edge"}: for passes 1 to last, each up to a factor, squared bias where light is smooth and at
+    edges; without what has no prediction. Those of component "total" are of its gathered light; with_direct_light() adds
+    the rest."""
     first = rows.iloc[0]
     number = numpy.arange(1, last + 1)
     if is_sampled(first, component):
-        return 1 / number, None
+        return {"variance": 1 / number}
     if first["integrator"] == "photonmapper":
-        return (1 / number, numpy.ones(last)) if first["mode"] == "radius" else None
+        constant = {"variance": 1 / number, "squared_bias": numpy.ones(last), "edge": numpy.ones(last)}
+        return constant if first["mode"] == "radius" else {}
     knaus_zwicker = first["schedule"] == "knaus-zwicker"
     squared = knaus_zwicker_radii(float(first["alpha"]), last) if knaus_zwicker else recorded_radii(rows, last)
-    return numpy.cumsum(1 / squared) / number ** 2, numpy.cumsum(squared) / number
+    return {"variance": numpy.cumsum(1 / squared) / number ** 2, "squared_bias": (numpy.cumsum(squared) / number) ** 2,
+            "edge": squared_bias_at_edges(squared)}
 
 
 def with_direct_light(predicted, moments, region, number):
     """The prediction of the whole picture: direct light by shadow rays adds its own variance, which falls as 1 / n. Shares
     are those measured at pass `number`. `moments` are by component."""
-    if predicted is None or not moments.get("direct"):
+    if not predicted or not moments.get("direct"):
         return predicted
-    variance, bias = predicted
+    variance = predicted["variance"]
     direct, gathered = (max(0.0, decomposition.decompose(moments[component][number, region])[0])
                         for component in ["direct", "gathered"])
     if direct + gathered == 0:
         return predicted
     passes = numpy.arange(1, len(variance) + 1)
-    return (direct * number / passes + gathered * variance / variance[number - 1]) / (direct + gathered), bias
+    return {**predicted,
+            "variance": (direct * number / passes + gathered * variance / variance[number - 1]) / (direct + gathered)}
 
 
 def asymptotes(first, component):
@@ -132,43 +153,54 @@ def asymptotes(first, component):
 
 
 def fit(moments, passes, predicted):
-    """{quantity: (slope, low, high, predicted slope, verdict)} from {pass: Moments}."""
+    """{quantity: (slope, low, high, predicted slope, that at edges, verdict)} from {pass: Moments}."""
     counts = moments[passes[0]].counts
     values = numpy.array([decomposition.decompose(moments[number]) for number in passes])    # [pass][quantity]
     without = numpy.array([decomposition.replicates(moments[number]) for number in passes])    # [pass][group][quantity]
     errors = numpy.array([decomposition.jackknife_error(value, left, counts) for value, left in zip(values, without)])
     results = {}
     for place, quantity in enumerate(decomposition.QUANTITIES):
-        expected = predicted_slope(quantity, passes, values[0], predicted)
+        expected = [predicted_slope(quantity, passes, values[0], predicted, bias) for bias in ["squared_bias", "edge"]]
         resolved = (values[:, place] > RESOLVED * errors[:, place]).all()
         found = slope(passes, values[:, place])
         left = slope(passes, without[:, :, place].T)
         if not resolved or not numpy.isfinite(left).all():
-            results[quantity] = (None, None, None, expected, "cannot tell")
+            results[quantity] = (None, None, None, *expected, "cannot tell")
             continue
         # Student's, since the error is estimated from as many groups.
         reach = stats.t.ppf(0.975, len(counts) - 1) * decomposition.jackknife_error(found, left, counts)
-        verdict = ("cannot tell" if 2 * reach > WIDEST else "" if expected is None
-                   else "agrees" if abs(found - expected) <= reach else "differs")
-        results[quantity] = (found, found - reach, found + reach, expected, verdict)
+        verdict = "cannot tell" if 2 * reach > WIDEST else verdict_of(found, reach, *expected)
+        results[quantity] = (found, found - reach, found + reach, *expected, verdict)
     return results
 
 
-def predicted_slope(quantity, passes, first_values, predicted):
-    """The fitted slope of the prediction at these passes; None without one."""
-    if predicted is None:
-        return None
-    variance, bias = predicted
+def verdict_of(found, reach, smooth, edge):
+    """Of a slope, half the width of its interval, and its predictions (None where there is none)."""
+    if smooth is None:
+        return ""
+    if abs(found - smooth) <= reach:
+        return "agrees"
+    if edge is None:
+        return "differs"
+    if abs(found - edge) <= reach:
+        return "agrees at edges"
+    return "between" if min(smooth, edge) < found < max(smooth, edge) else "differs"
+
+
+def predicted_slope(quantity, passes, first_values, predicted, bias):
+    """The fitted slope of the prediction at these passes, with squared bias as `bias` ("squared_bias", "edge") says; None
+    without one."""
     places = numpy.array(passes) - 1
     if quantity == "variance":
-        return slope(passes, variance[places])
-    if bias is None:
+        # It has no other prediction at edges.
+        return slope(passes, predicted["variance"][places]) if predicted and bias == "squared_bias" else None
+    if bias not in predicted:
         return None
-    squared = bias[places] ** 2
+    squared, variance = predicted[bias][places], predicted["variance"][places]
     if quantity == "squared_bias":
         return slope(passes, squared)
     of_variance, of_bias = max(0.0, first_values[0]), max(0.0, first_values[1])
-    whole = of_variance * variance[places] / variance[places[0]] + of_bias * squared / squared[0]
+    whole = of_variance * variance / variance[0] + of_bias * squared / squared[0]
     return slope(passes, whole) if whole[0] > 0 else None
 
 
@@ -190,14 +222,15 @@ def fits_of(ensemble, own, moments, component, window):
         if None in of_region.values():    # no finite pixel
             continue
         predicted = with_direct_light(gathered, moments, region, passes[0]) if component == "total" else gathered
-        for quantity, (found, low, high, expected, verdict) in fit(of_region, passes, predicted).items():
+        for quantity, (found, low, high, expected, at_edges, verdict) in fit(of_region, passes, predicted).items():
             smooth, edge = asymptotes(first, component)[quantity]
             table.append({
                 "experiment": first["experiment"], "scene": first["scene"], "point": ensemble.point,
                 **{column: first[column] for column in records.SETTINGS}, "component": component, "region": region,
                 "quantity": quantity, "first_pass": passes[0], "last_pass": passes[-1], "passes": len(passes),
                 "seeds": int(of_region[passes[0]].counts.sum()), "slope": text(found), "low": text(low), "high": text(high),
-                "asymptote": text(smooth), "edge": text(edge), "predicted": text(expected), "verdict": verdict})
+                "asymptote": text(smooth), "edge": text(edge), "predicted": text(expected), "predicted_edge": text(at_edges),
+                "verdict": verdict})
     return table
 
 

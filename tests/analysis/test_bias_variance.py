@@ -83,10 +83,14 @@ class BiasVariance(unittest.TestCase):
         self.assertEqual((passes[0], passes[-1]), (4, 128))
         at_first = rows[(rows["pass"] == 4) & (rows["region"] == "image") & (rows["component"] == "gathered")].iloc[0]
         for quantity in decomposition.QUANTITIES:
-            self.assertAlmostEqual(values[quantity][0] / at_first[quantity], 1, places=9)
-        number = numpy.arange(1, 129)
-        expected = numpy.cumsum(fits.knaus_zwicker_radii(0.9, 128)) / number
-        self.assertAlmostEqual(values["squared_bias"][-1] / values["squared_bias"][0], (expected[-1] / expected[3]) ** 2)
+            for kind, line in values[quantity].items():
+                self.assertAlmostEqual(line[0] / at_first[quantity], 1, places=9)
+        self.assertEqual([list(values[quantity]) for quantity in ["variance", "squared_bias", "mse"]],
+                         [["squared_bias"], ["squared_bias", "edge"], ["squared_bias", "edge"]])
+        squared = fits.knaus_zwicker_radii(0.9, 128)
+        smooth, edge = (numpy.cumsum(squared) / numpy.arange(1, 129)) ** 2, fits.squared_bias_at_edges(squared)
+        for kind, expected in [("squared_bias", smooth), ("edge", edge)]:
+            self.assertAlmostEqual(values["squared_bias"][kind][-1] / values["squared_bias"][kind][0], expected[-1] / expected[3])
 
     def test_without_a_decomposition_it_says_what_to_run(self):
         (self.results / "decomposition.csv").unlink()

@@ -105,6 +105,27 @@ class Drawing(unittest.TestCase):
         self.assertEqual(fits.probabilities_of_best(moments_of_noise({"0.5": 0.2, "0.7": 0.1}, common, 0.0, self.random)), {})
 
 
+class SquaredBiasAtEdges(unittest.TestCase):
+    def test_falls_with_the_radius_to_the_first_power(self):
+        for alpha in [0.5, 2 / 3, 0.8]:
+            found = fits.squared_bias_at_edges(fits.knaus_zwicker_radii(alpha, 4096))
+            self.assertAlmostEqual(fits.slope([2048, 4096], found[[2047, 4095]]), (alpha - 1) / 2, delta=0.012)
+
+    def test_is_that_of_discs_that_hang_over_an_edge(self):
+        """Two passes, radii 1 and 0.6, by counting cells of discs instead of by the chord's formula."""
+        cells = (numpy.arange(-400, 400) + 0.5) / 400
+        x, y = numpy.meshgrid(cells, cells)
+        across = numpy.sort(x[x * x + y * y < 1])    # distances of a unit disc's cells from the line through its centre
+
+        def missed(distance, radius):
+            return 1 - numpy.searchsorted(across, distance / radius) / len(across)
+        distances = (numpy.arange(1000) + 0.5) / 1000
+        first = missed(distances, 1.0)
+        both = (first + missed(distances, 0.6)) / 2
+        found = fits.squared_bias_at_edges(numpy.array([1.0, 0.36]))
+        self.assertAlmostEqual(found[1] / found[0], (both ** 2).mean() / (first ** 2).mean(), delta=1e-3)
+
+
 class Fits(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -151,15 +172,30 @@ class Fits(unittest.TestCase):
         return lambda n: variance[max(1, n) - 1], lambda n: bias[max(1, n) - 1]
 
     def test_another_slope_than_predicted_differs(self):
-        made.write_ensemble(self.results, "box", list(range(1, 17)), lambda n: 0.1 / max(1, n) ** 0.1,
+        made.write_ensemble(self.results, "box", list(range(1, 17)), lambda n: 0.1 / max(1, n) ** 0.4,
                             lambda n: 0.2 / max(1, n) ** 0.25, self.random)
         made.write_records(self.results, {"box": {"alpha": "0.7", "schedule": "knaus-zwicker"}}, list(range(1, 17)))
         table, _ = self.run_fits()
         rows = {row["quantity"]: row for row in table if row["component"] == "gathered" and row["region"] == "image"}
-        for quantity, expected in [("variance", -0.5), ("squared_bias", -0.2)]:
+        for quantity, expected in [("variance", -0.5), ("squared_bias", -0.8)]:
             self.assertEqual(rows[quantity]["verdict"], "differs")
             self.assertLess(float(rows[quantity]["low"]), expected)
             self.assertGreater(float(rows[quantity]["high"]), expected)
+
+    def test_edges_are_told_from_smooth_light_and_from_a_mixture(self):
+        squared = fits.knaus_zwicker_radii(0.7, 128)
+        smooth, edge = (numpy.cumsum(squared) / numpy.arange(1, 129)) ** 2, fits.squared_bias_at_edges(squared)
+        seeds, settings, random = list(range(1, 17)), {}, numpy.random.default_rng(5)    # each interval misses one time in 20
+        biases = {"smooth": smooth / smooth[0], "edge": edge / edge[0]}
+        biases["mixed"] = (biases["smooth"] + biases["edge"]) / 2
+        for place, (name, bias) in enumerate(biases.items()):
+            made.write_ensemble(self.results, name, seeds, lambda n: 0.3 * bias[max(1, n) - 1] ** 0.5, lambda n: 0.1, random)
+            settings[name] = {"alpha": "0.7", "schedule": "knaus-zwicker", "photons_per_pass": str(1000 + place)}
+        made.write_records(self.results, settings, seeds)
+        table, _ = self.run_fits()
+        verdicts = {row["point"]: row["verdict"] for row in table
+                    if (row["component"], row["region"], row["quantity"]) == ("gathered", "image", "squared_bias")}
+        self.assertEqual(verdicts, {"smooth": "agrees", "edge": "agrees at edges", "mixed": "between"})
 
     def test_a_bias_below_the_noise_cannot_be_told(self):
         made.write_ensemble(self.results, "box", list(range(1, 17)), lambda n: 1e-5, lambda n: 0.5 / max(1, n) ** 0.35,
