@@ -15,6 +15,7 @@
 #include "scene/loader.h"
 #include "scene/narrow_gaps.h"
 #include "transport/hit_points.h"
+#include "transport/plain_images.h"
 
 namespace photonlab {
 
@@ -103,8 +104,7 @@ void info(const InfoOptions& options) {
     }
     for (const std::string& note : scene.notes) fmt::print("note        {}\n", note);
     print_narrow_gaps(scene);
-    if (scene.emitters.empty()) fmt::print("warning     there is no light: every image of this scene is black\n");
-    if (count == 0) fmt::print("warning     the camera sees no surface to gather at\n");
+    for (const std::string& reason : why_images_are_plain(scene, hit_points)) fmt::print("warning     {}\n", reason);
 }
 
 }  // namespace

@@ -18,6 +18,7 @@
 #include "image/exr.h"
 #include "image/png.h"
 #include "scene/loader.h"
+#include "transport/plain_images.h"
 
 namespace photonlab {
 
@@ -133,6 +134,7 @@ void render(const RenderOptions& options) {
     progress.clear();
 
     print_summary(shown, settings, scene, hit_points.points.size(), errors);
+    for (const std::string& reason : why_images_are_plain(scene, hit_points)) fmt::print("note        {}\n", reason);
     fmt::print("wrote       {}\n", options.output.string());
     for (const std::string& file : {options.png, options.csv})
         if (!file.empty()) fmt::print("wrote       {}\n", file);

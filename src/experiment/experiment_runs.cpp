@@ -16,6 +16,7 @@
 #include "experiment/run_record.h"
 #include "experiment/version.h"
 #include "scene/loader.h"
+#include "transport/plain_images.h"
 
 namespace photonlab {
 
@@ -334,6 +335,9 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
         if (current_scene != first.run->scene) reference.reset();
         if (current_scene != first.run->scene || current_cutoff != cutoff)
             hit_points = trace_hit_points(scene, experiment.samples_per_pixel, experiment.threads, cutoff);
+        if (current_scene != first.run->scene)
+            for (const std::string& reason : why_images_are_plain(scene, *hit_points))
+                progress.finished(entry.name + ": " + reason);
         if (entry.reference && (!reference || reference_depth != max_depth))
             reference = load_reference(*entry.reference, subject_of(scene, experiment.samples_per_pixel, max_depth));
         current_scene = first.run->scene;
