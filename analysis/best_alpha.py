@@ -93,7 +93,7 @@ def draw_scene(rows):
             draw_panel(axes, own[own["region"] == region], alphas)
             style.logarithmic(axes.xaxis, low / 1.5, high * 1.5, most=4)
             axes.set_title(region, loc="right")
-        row[0].set_ylabel(f"{label}\nalpha" if label else "alpha")
+        row[0].set_ylabel(f"{label}\nα" if label else "α")
     for axes in grid[-1]:
         axes.set_xlabel("light paths emitted")
     grid[0][0].set_title(rows["scene"].iloc[0], loc="left")

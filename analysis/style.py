@@ -72,12 +72,14 @@ def logarithmic(axis, low, high, base_two=False, most=6):
         powers = [2 ** power for power in range(64) if low <= 2 ** power <= high]
         ticks = every_nth(powers, most=8)
     else:
+        finer = []
         for digits in [(1, 1.5, 2, 3, 5, 7), (1, 2, 5), (1, 3), (1,)]:
             ticks = [digit * 10.0 ** power for power in range(-30, 31) for digit in digits
                      if low <= digit * 10.0 ** power <= high]
             if len(ticks) <= most:
                 break
-        ticks = every_nth(ticks, most)
+            finer = ticks
+        ticks = every_nth(ticks if len(ticks) > 2 else finer or ticks, most)
     if len(ticks) < 3:    # a short way on a logarithmic axis is nearly a linear one
         ticks = [tick for tick in ticker.MaxNLocator(4).tick_values(low, high) if low <= tick <= high]
     axis.set_major_locator(ticker.FixedLocator(ticks))
