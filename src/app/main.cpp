@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <string>
@@ -16,8 +17,18 @@ namespace {
 constexpr int bad_input = 2;
 constexpr int internal_error = 1;
 
+/// One line that any terminal can show, however hostile the file that a message quotes: control characters become
+/// spaces, and of more than 2000 bytes the middle is left out.
+std::string one_line(std::string text) {
+    constexpr std::size_t longest = 2000;
+    if (text.size() > longest) text.replace(longest / 2, text.size() - longest, " ... ");
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+    return text;
+}
+
 int report(const std::string& message, int code) {
-    fmt::print(stderr, "photonlab: {}\n", message);
+    fmt::print(stderr, "photonlab: {}\n", one_line(message));
     return code;
 }
 

@@ -150,7 +150,7 @@ void add_render_command(CLI::App& app) {
     command->add_option("-o", options->output, "image to write: linear float RGB and layers, OpenEXR")->required();
     options->method.add_to(*command);
     command->add_option("--passes", options->passes, "number of passes [32]")->check(CLI::Range(1u, 0xffffffffu));
-    command->add_option("--seed", options->seed, "of all random numbers [1]");
+    command->add_option("--seed", options->seed, "of all random numbers [1]")->check(CLI::NonNegativeNumber);
     command->add_option("--threads", options->threads, "threads to use [all]; the image does not depend on it")
         ->check(CLI::Range(1, 1024));
     command->add_option("--resolution", options->resolution, "WIDTHxHEIGHT in place of the scene file's");

@@ -11,15 +11,50 @@
 
 namespace photonlab {
 
-std::string read_text_file(const std::filesystem::path& file) {
+void require_ordinary_file(const std::filesystem::path& file) {
     std::error_code error;
-    if (std::filesystem::is_directory(file, error))
-        throw InputError(file.string(), "expected a file, this is a folder");
+    const std::filesystem::file_status status = std::filesystem::status(file, error);
+    if (std::filesystem::is_directory(status)) throw InputError(file.string(), "expected a file, this is a folder");
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+        throw InputError(file.string(), "expected a file, this is a pipe or a device");
+    if (error) throw InputError(file.string(), "cannot be read: " + error.message());
+    if (!std::ifstream(file, std::ios::binary))
+        throw InputError(file.string(), std::string("cannot be read: ") + std::strerror(errno));
+}
+
+std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest) {
+    require_ordinary_file(file);
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(file, error);
+    if (!error && size > largest)
+        throw InputError(file.string(),
+                         "expected at most " + std::to_string(largest) + " bytes, got " + std::to_string(size));
     std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw InputError(file.string(), std::string("cannot be read: ") + std::strerror(errno));
     std::ostringstream text;
     text << stream.rdbuf();
+    if (stream.bad() || !stream.is_open()) throw InputError(file.string(), "cannot be read to its end");
     return std::move(text).str();
+}
+
+std::size_t find_no_text(std::string_view bytes) {
+    for (std::size_t i = 0; i < bytes.size();) {
+        const auto byte = [&](std::size_t at) -> unsigned {
+            return at < bytes.size() ? static_cast<unsigned char>(bytes[at]) : 0u;
+        };
+        const unsigned first = byte(i);
+        const std::size_t length = first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
+        if (first == 0 || length == 0 || first > 0xf4) return i;
+        unsigned code = length == 1 ? first : first & (0x7fu >> length);
+        for (std::size_t k = 1; k < length; ++k) {
+            if ((byte(i + k) & 0xc0) != 0x80) return i;
+            code = code << 6 | (byte(i + k) & 0x3f);
+        }
+        const bool is_too_long = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
+        const bool is_surrogate = code >= 0xd800 && code < 0xe000;
+        if (is_too_long || is_surrogate || code > 0x10ffff) return i;
+        i += length;
+    }
+    return std::string_view::npos;
 }
 
 void write_text_file(const std::filesystem::path& file, std::string_view text) {

@@ -5,6 +5,9 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
+#include <limits>
+
 #include "core/files.h"
 
 namespace photonlab {
@@ -42,7 +45,7 @@ std::string RunningHash::text() const {
 }
 
 std::string hash_file(const std::filesystem::path& file) {
-    return hash_text(read_text_file(file));
+    return hash_text(read_text_file(file, std::numeric_limits<std::uintmax_t>::max()));
 }
 
 }  // namespace photonlab

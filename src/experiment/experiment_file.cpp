@@ -23,6 +23,8 @@ constexpr std::int64_t most_passes = 0xffffffff;  // a random stream's pass has 
 constexpr std::int64_t largest_side = 65536;
 constexpr std::int64_t most_threads = 1024;
 constexpr std::size_t most_runs = 100'000;
+constexpr std::uint64_t most_records = 10'000'000;                // recorded passes of all runs together
+constexpr std::uintmax_t largest_file = std::uintmax_t{1} << 24;  // bytes
 
 /// The values of one setting, and where they stand in the file.
 struct Axis {
@@ -58,7 +60,7 @@ public:
     }
 
     Experiment read() {
-        const std::string text = read_text_file(experiment_.file);
+        const std::string text = read_text_file(experiment_.file, largest_file);
         toml::table root;
         try {
             root = toml::parse(text, experiment_.file.string());
@@ -171,6 +173,11 @@ private:
         if (record && record->is_string()) {
             const std::string rule = string(*record, "record");
             if (rule == "all") {
+                if (plan.passes > most_records)
+                    throw InputError(place(*record),
+                                     fmt::format("record: all of {} passes are more than {}; name those "
+                                                 "that are wanted",
+                                                 plan.passes, most_records));
                 for (std::uint64_t pass = 1; pass <= plan.passes; ++pass) recorded.push_back(pass);
             } else if (rule != "powers-of-two") {
                 throw InputError(
@@ -232,9 +239,13 @@ private:
     }
 
     std::filesystem::path path(const toml::node& node, std::string_view what) const {
-        const std::filesystem::path written = string(node, what);
+        const std::string written = string(node, what);
+        if (written.find('\0') != written.npos)
+            throw InputError(place(node),
+                             fmt::format("{}: expected the name of a file, got one with a NUL in it", what));
         const std::filesystem::path whole = (experiment_.file.parent_path() / written).lexically_normal();
-        if (!std::filesystem::exists(whole))
+        std::error_code error;
+        if (!std::filesystem::exists(whole, error))
             throw InputError(place(node), fmt::format("{}: {} does not exist", what, whole.string()));
         return whole;
     }
@@ -391,6 +402,10 @@ private:
                                              run.name));
             if (experiment_.runs.size() == most_runs)
                 throw InputError(method.place, fmt::format("more than {} runs", most_runs));
+            records_ += run.plan.recorded.size();
+            if (records_ > most_records)
+                throw InputError(method.place,
+                                 fmt::format("the runs record more than {} passes in all; record fewer", most_records));
             experiment_.runs.push_back(std::move(run));
         }
     }
@@ -408,6 +423,7 @@ private:
     Experiment experiment_;
     std::optional<SmokeLimits> smoke_;
     std::optional<Resolution> resolution_;
+    std::uint64_t records_ = 0;
     std::uint64_t written_passes_ = 1;
     std::uint64_t most_written_passes_ = 1;
     std::vector<std::uint64_t> seeds_;

@@ -4,6 +4,8 @@
 
 #include <charconv>
 #include <chrono>
+#include <cstdint>
+#include <limits>
 #include <memory>
 
 #include "core/error.h"
@@ -17,6 +19,7 @@ namespace photonlab {
 
 namespace {
 
+constexpr std::uintmax_t largest_json = std::uintmax_t{1} << 24;  // bytes
 constexpr std::string_view halves[] = {"half_a", "half_b"};
 constexpr std::string_view key_attribute = "photonlab.key";
 constexpr std::string_view seed_attribute = "photonlab.seed";
@@ -266,13 +269,30 @@ Json read_reference_json(const std::filesystem::path& folder) {
                          "this is no reference: reference.json is missing (photonlab reference makes one)");
     Json json;
     try {
-        json = Json::parse(read_text_file(file));
+        json = Json::parse(read_text_file(file, largest_json));
         json.at("scene").at("hash").get<std::string>();
-        for (const char* number : {"width", "height", "samples_per_pixel", "max_depth", "reference_version"})
-            json.at(number).get<int>();
+        // Json turns any number into an int, whether it fits or not.
+        const auto require_whole = [&](const char* name, std::int64_t least, std::int64_t most) {
+            const Json& number = json.at(name);
+            const bool fits = number.is_number_unsigned()
+                                  ? number.get<std::uint64_t>() <= static_cast<std::uint64_t>(most)
+                                  : number.is_number_integer();
+            if (!fits || number.get<std::int64_t>() < least || number.get<std::int64_t>() > most)
+                throw InputError(file.string(),
+                                 fmt::format("{}: expected a whole number from {} to {}", name, least, most));
+        };
+        const auto require_not_negative = [&](const Json& number, const char* name) {
+            if (!(number.get<double>() >= 0.0))
+                throw InputError(file.string(), fmt::format("{}: expected a number of at least 0", name));
+        };
+        constexpr std::int64_t most = std::numeric_limits<int>::max();
+        for (const char* name : {"width", "height", "samples_per_pixel"}) require_whole(name, 1, most);
+        require_whole("max_depth", -1, most);
+        require_whole("reference_version", 0, most);
+        require_whole("samples_per_half", 1, std::numeric_limits<std::int64_t>::max());
         json.at("key").get<std::string>();
-        json.at("samples_per_half").get<std::uint64_t>();
-        json.at("floor_mse").at("total").get<double>();
+        require_not_negative(json.at("floor_mse").at("total"), "floor_mse: total");
+        if (json.contains("seconds")) require_not_negative(json.at("seconds"), "seconds");
         for (const std::string_view half : halves) json.at("checksums").at(std::string(half)).get<std::string>();
     } catch (const Json::exception& error) {
         throw InputError(file.string(), std::string("this is no reference: ") + error.what());

@@ -3,21 +3,27 @@
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStdIO.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTestFile.h>
+#include <OpenEXR/ImfThreading.h>
+#include <OpenEXR/ImfTileDescription.h>
 #include <OpenEXR/ImfVersion.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <set>
 
 #include "core/error.h"
+#include "core/files.h"
 #include "core/temporary_file.h"
 
 namespace photonlab {
@@ -29,7 +35,9 @@ constexpr const char* total_layer = "total";
 
 // A header may claim any size, and memory for it would be asked for before the first pixel is found missing. No
 // image here comes near the first limit; the second is far above what any of OpenEXR's compressions reaches.
-constexpr std::int64_t largest_pixel_count = std::int64_t{1} << 28;
+constexpr std::int64_t largest_pixel_count = std::int64_t{1} << 28;  // of all layers
+constexpr std::int64_t largest_block = std::int64_t{1} << 29;        // bytes that OpenEXR decodes at once
+constexpr int largest_side = 1 << 24;
 constexpr std::int64_t largest_compression_ratio = 100'000;
 
 // Names to which OpenEXR gives a meaning even where they are strings.
@@ -88,22 +96,36 @@ void require_channels(const std::string& place, const Imf::ChannelList& channels
     }
 }
 
+/// The most that OpenEXR decodes at once: a tile, or as many lines as any of its compressions takes together.
+std::int64_t block_bytes(const Imf::Header& header, std::int64_t width) {
+    constexpr std::int64_t most_lines = 256;
+    std::int64_t pixel_bytes = 0;
+    for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) pixel_bytes += 4;
+    if (!header.hasTileDescription()) return width * most_lines * pixel_bytes;
+    const Imf::TileDescription& tile = header.tileDescription();
+    return tile.xSize > largest_block / std::max(1u, tile.ySize) ? std::numeric_limits<std::int64_t>::max()
+                                                                 : std::int64_t{tile.xSize} * tile.ySize * pixel_bytes;
+}
+
 Metadata string_attributes(const Imf::Header& header) {
     Metadata metadata;
     for (auto attribute = header.begin(); attribute != header.end(); ++attribute)
         if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute());
-            text && std::strcmp(attribute.name(), layers_attribute) != 0)
+            text && std::strcmp(attribute.name(), layers_attribute) != 0 && std::strcmp(attribute.name(), "type") != 0)
             metadata[attribute.name()] = text->value();
     return metadata;
 }
 
 Image read_pixels(const std::filesystem::path& file, Metadata* metadata) {
     const std::string place = file.string();
-    Imf::InputFile input(place.c_str());
+    // This class reads the header and leaves the memory for pixels to InputPart. Its table of where blocks begin has an
+    // entry a line, though.
+    Imf::Header::setMaxImageSize(largest_side, largest_side);
+    Imf::MultiPartInputFile input(place.c_str(), Imf::globalThreadCount(), false);
     if (Imf::isMultiPart(input.version())) throw InputError(place, "has several parts; expected a single image");
     if (Imf::isNonImage(input.version())) throw InputError(place, "holds deep data; expected a flat image");
 
-    const Imf::Header& header = input.header();
+    const Imf::Header& header = input.header(0);
     const Imath::Box2i window = header.dataWindow();
     const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
     const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
@@ -112,14 +134,19 @@ Image read_pixels(const std::filesystem::path& file, Metadata* metadata) {
 
     const std::vector<std::string> names = layer_names(header);
     const bool layered = header.findTypedAttribute<Imf::StringAttribute>(layers_attribute) != nullptr;
+    const std::set<std::string> different(names.begin(), names.end());
+    if (different.size() != names.size()) throw InputError(place, "names a layer twice");
     for (const std::string& name : names) require_channels(place, header.channels(), layered ? name + "." : "");
 
     const auto file_bytes = static_cast<std::int64_t>(std::filesystem::file_size(file));
-    if (width > largest_pixel_count / height ||
-        width * height * static_cast<std::int64_t>(names.size()) / largest_compression_ratio > file_bytes)
+    const auto layers = static_cast<std::int64_t>(names.size());
+    if (width > largest_pixel_count / height || width * height > largest_pixel_count / layers ||
+        width * height * layers / largest_compression_ratio > file_bytes)
         throw InputError(place, "claims " + size + " pixels, more than is read here or than its " +
                                     std::to_string(file_bytes) + " bytes can hold");
-    if (!input.isComplete()) throw InputError(place, "is incomplete: part of its pixels is missing");
+    if (block_bytes(header, width) > largest_block)
+        throw InputError(place, "has too many channels, or tiles too large, for its width of " + std::to_string(width));
+    if (!input.partComplete(0)) throw InputError(place, "is incomplete: part of its pixels is missing");
 
     Image image;
     image.width = static_cast<int>(width);
@@ -130,8 +157,9 @@ Image read_pixels(const std::filesystem::path& file, Metadata* metadata) {
     for (Layer& layer : image.layers)
         insert_slices(frame, layered ? layer.name + "." : "", layer.pixels.data(), image.width, window.min.x,
                       window.min.y);
-    input.setFrameBuffer(frame);
-    input.readPixels(window.min.y, window.max.y);
+    Imf::InputPart part(input, 0);
+    part.setFrameBuffer(frame);
+    part.readPixels(window.min.y, window.max.y);
 
     if (metadata) *metadata = string_attributes(header);
     return image;
@@ -207,9 +235,7 @@ namespace {
 template <typename Read>
 auto read_checked(const std::filesystem::path& file, const Read& read) {
     const std::string place = file.string();
-    if (std::filesystem::is_directory(file)) throw InputError(place, "is a folder; expected an OpenEXR file");
-    if (!std::ifstream(file, std::ios::binary))
-        throw InputError(place, std::string("cannot be opened: ") + std::strerror(errno));
+    require_ordinary_file(file);
     if (!Imf::isOpenExrFile(place.c_str())) throw InputError(place, "is not an OpenEXR file");
     try {
         return read();
@@ -227,7 +253,8 @@ Image read_exr(const std::filesystem::path& file, Metadata* metadata) {
 }
 
 Metadata read_exr_metadata(const std::filesystem::path& file) {
-    return read_checked(file, [&] { return string_attributes(Imf::InputFile(file.c_str()).header()); });
+    return read_checked(file,
+                        [&] { return string_attributes(Imf::MultiPartInputFile(file.c_str(), 0, false).header(0)); });
 }
 
 }  // namespace photonlab

@@ -13,13 +13,13 @@ namespace photonlab {
 struct DecodedImage {
     int width = 0;
     int height = 0;
-    int channels = 0;
+    int channels = 0;                ///< 1 or 3: alpha and all beyond it are left out
     bool is_floating_point = false;  ///< in the file; integers are scaled to [0, 1]
     std::vector<float> values;       ///< width * height * channels
 };
 
 struct ImageCodecs {
-    /// Reads an image of 1 to 32768 pixels a side. Throws InputError.
+    /// Reads a BMP, EXR, HDR, JPEG, PNG, TGA or TIFF of at most 2^26 pixels. Throws InputError.
     DecodedImage (*read)(const std::filesystem::path& file);
 
     /// Writes 8-bit sRGB to `temporary`; `file` is its name in messages. Throws InputError.

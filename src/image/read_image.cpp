@@ -1,5 +1,6 @@
 #include "image/read_image.h"
 
+#include "core/files.h"
 #include "image/image_codecs.h"
 
 namespace photonlab {
@@ -9,6 +10,7 @@ double srgb_to_linear(double value) {
 }
 
 ColorImage read_color_image(const std::filesystem::path& file, bool raw) {
+    require_ordinary_file(file);
     const DecodedImage decoded = image_codecs().read(file);
     const auto channels = static_cast<std::size_t>(decoded.channels);
     const std::size_t count = decoded.values.size() / channels;

@@ -80,7 +80,9 @@ void require_valid(const MethodSettings& settings) {
             fmt::format("eps: expected at least 0, which is exact, got {}", settings.eps));
     require(settings.branch_cutoff >= 1e-12 && settings.branch_cutoff <= 1.0,
             fmt::format("branch_cutoff: expected a throughput from 1e-12 to 1, got {}", settings.branch_cutoff));
-    require(settings.photons_per_pass >= 1, "photons_per_pass: expected at least 1");
+    constexpr std::uint64_t most_photons = std::uint64_t{1} << 32;
+    require(settings.photons_per_pass >= 1 && settings.photons_per_pass <= most_photons,
+            fmt::format("photons_per_pass: expected from 1 to {}, got {}", most_photons, settings.photons_per_pass));
 }
 
 namespace {

@@ -7,6 +7,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 
 #include "core/error.h"
 #include "core/hash.h"
@@ -92,9 +94,13 @@ private:
     std::size_t material_index(const XmlElement& element) {
         const auto found = materials_.find(&element);
         if (found != materials_.end()) return found->second;
+        if (scene_.materials.size() >
+            std::numeric_limits<std::uint16_t>::max())  // which is what a hit point has for it
+            throw InputError(element.place, "expected at most 65536 materials");
         Material material = read_material(
             element, {.resolve = [this](const XmlElement& other) -> const XmlElement& { return resolve(other); },
                       .bytes_read = bytes_read_,
+                      .texture_pixels = texture_pixels_,
                       .note = [this](const std::string& sentence) { note(sentence); }});
         const std::string id = element.attribute("id");
         material.id = id.empty() ? element.attribute("type") : id;
@@ -163,7 +169,7 @@ private:
         const bool face_normals = properties.boolean("face_normals").value_or(false);
         const bool flip_texture = properties.boolean("flip_tex_coords").value_or(true);
         const std::filesystem::path file = element.file_called(*filename);
-        bytes_read_ += read_whole_file(file, properties.place_of("filename"));
+        read_part(file, properties.place_of("filename"), bytes_read_);
         MeshDescription mesh = load_obj_mesh(file, face_normals);
         if (flip_texture)
             for (Imath::V2d& uv : mesh.texture_coordinates) uv.y = 1.0 - uv.y;
@@ -368,6 +374,7 @@ private:
 
     SceneDescription& scene_;
     std::string& bytes_read_;
+    std::size_t texture_pixels_ = 0;
     std::map<std::string, const XmlElement*> by_id_;
     std::map<const XmlElement*, std::size_t> materials_;
     std::optional<std::size_t> default_material_;

@@ -12,6 +12,8 @@ namespace photonlab {
 
 namespace {
 
+constexpr std::size_t texture_pixel_limit = std::size_t{1} << 27;  // of a scene: small files can hold very many
+
 /// A factor on what a surface reflects or lets through; 1 where it is not given.
 Color read_factor(Properties& properties, const std::string& name, double missing) {
     const ColorD factor = properties.reflectance(name).value_or(ColorD(missing));
@@ -43,8 +45,12 @@ std::shared_ptr<const Texture> read_bitmap(const XmlElement& element, const Mate
         throw InputError(properties.objects().front()->place, "bitmap: expected no nested plugin");
 
     const std::filesystem::path file = element.file_called(*filename);
-    source.bytes_read += read_whole_file(file, properties.place_of("filename"));
+    read_part(file, properties.place_of("filename"), source.bytes_read);
     auto texture = std::make_shared<Texture>(Texture{read_color_image(file, raw), to_uv});
+    source.texture_pixels += texture->image.pixels.size();
+    if (source.texture_pixels > texture_pixel_limit)
+        throw InputError(properties.place_of("filename"),
+                         fmt::format("expected textures of at most {} pixels in all", texture_pixel_limit));
     for (const Color& pixel : texture->image.pixels)
         if (!is_finite(pixel) || std::min({pixel.x, pixel.y, pixel.z}) < 0.0f || max_channel(pixel) > 1.0f)
             throw InputError(properties.place_of("filename"),

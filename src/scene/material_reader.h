@@ -14,6 +14,7 @@ struct MaterialSource {
     /// The element itself, or the one that a <ref> names.
     std::function<const XmlElement&(const XmlElement&)> resolve;
     std::string& bytes_read;                       ///< takes the bytes of every file that is read
+    std::size_t& texture_pixels;                   ///< of all textures so far
     std::function<void(const std::string&)> note;  ///< takes what the user should know, a sentence each
 };
 

@@ -3,6 +3,7 @@
 // which is also how a message knows its line.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #define TINYOBJLOADER_USE_DOUBLE
 #define TINYOBJLOADER_IMPLEMENTATION
@@ -25,10 +26,16 @@ namespace {
 
 constexpr std::size_t corner_limit = 255;  // of one face: tinyobjloader 2.0.0rc10 counts them in a byte
 
-/// Calls `use(line number, words)` for each line of vertex data or faces, and blanks the comments in them, which the
-/// parser would take for more corners. Lines end as they do for the parser: at \n, \r or both.
+/// What an OBJ file may say that does not change its triangles: names, groups, materials, lines and points.
+constexpr std::string_view ignored_keywords[] = {"o",      "g",          "s",         "mg",     "l",        "p",
+                                                 "mtllib", "usemtl",     "maplib",    "usemap", "c_interp", "d_interp",
+                                                 "lod",    "shadow_obj", "trace_obj", "bevel",  "vp"};
+
+/// Calls `use(line number, words)` for each line of vertex data or faces. Blanks the comments in them, which the parser
+/// would take for more corners, and all other lines: its own reading of them is not needed, and a tag of the wrong
+/// size makes it ask for any amount of memory. Lines end as they do for the parser: at \n, \r or both.
 template <typename Use>
-void for_each_data_line(std::string& text, const Use& use) {
+void for_each_data_line(std::string& text, const std::filesystem::path& file, const Use& use) {
     constexpr std::string_view blanks = " \t\v\f";
     std::vector<std::string_view> words;
     std::size_t number = 0;
@@ -49,13 +56,28 @@ void for_each_data_line(std::string& text, const Use& use) {
         split(end);
         if (!words.empty() && (words[0] == "v" || words[0] == "vn" || words[0] == "vt" || words[0] == "f")) {
             // A # inside a word begins none: 1.#IND is how some programs write what is not a number.
-            std::size_t comment = std::min(text.find('#', begin), end);
+            const std::string_view up_to_end = std::string_view(text).substr(0, end);
+            std::size_t comment = std::min(up_to_end.find('#', begin), end);
             while (comment < end && blanks.find(text[comment - 1]) == blanks.npos)
-                comment = std::min(text.find('#', comment + 1), end);
+                comment = std::min(up_to_end.find('#', comment + 1), end);
             std::fill(text.begin() + static_cast<std::ptrdiff_t>(comment),
                       text.begin() + static_cast<std::ptrdiff_t>(end), ' ');
             split(comment);
+            if (words.back() == "\\")
+                throw InputError(
+                    fmt::format("{}:{}", file.string(), number),
+                    "expected a line of its own for each vertex and face, got one that goes on in the next");
             use(number, words);
+        } else if (!words.empty()) {
+            const bool is_known =
+                words[0][0] == '#' || std::find(std::begin(ignored_keywords), std::end(ignored_keywords), words[0]) !=
+                                          std::end(ignored_keywords);
+            if (!is_known)
+                throw InputError(fmt::format("{}:{}", file.string(), number),
+                                 fmt::format("unknown keyword \"{}\"; known here: v, vn, vt, f, and without effect: {}",
+                                             words[0].substr(0, 60), fmt::join(ignored_keywords, ", ")));
+            std::fill(text.begin() + static_cast<std::ptrdiff_t>(begin),
+                      text.begin() + static_cast<std::ptrdiff_t>(end), ' ');
         }
         begin = next;
     }
@@ -108,13 +130,13 @@ void require_well_formed(std::string& text, const std::filesystem::path& file) {
     const auto place = [&](std::size_t number) { return fmt::format("{}:{}", file.string(), number); };
     const auto kind_of = [](std::string_view keyword) { return keyword == "v" ? 0u : keyword == "vt" ? 1u : 2u; };
     Counts total{};
-    for_each_data_line(text, [&](std::size_t number, const std::vector<std::string_view>& words) {
+    for_each_data_line(text, file, [&](std::size_t number, const std::vector<std::string_view>& words) {
         if (words[0] == "f") return;
         require_numbers(words, place(number));
         ++total[kind_of(words[0])];
     });
     Counts before{};
-    for_each_data_line(text, [&](std::size_t number, const std::vector<std::string_view>& words) {
+    for_each_data_line(text, file, [&](std::size_t number, const std::vector<std::string_view>& words) {
         if (words[0] == "f")
             require_face(words, before, total, place(number));
         else
@@ -144,6 +166,7 @@ std::vector<VectorD> angle_weighted_normals(const MeshDescription& mesh) {
 
 MeshDescription load_obj_mesh(const std::filesystem::path& file, bool face_normals) {
     std::string text = read_whole_file(file, file.string());
+    if (text.starts_with("\xef\xbb\xbf")) text.replace(0, 3, "   ");  // a byte order mark
     require_well_formed(text, file);
     tinyobj::ObjReaderConfig config;
     config.triangulate = false;  // its cuts differ between versions and from Mitsuba's

@@ -21,7 +21,7 @@ const std::set<std::string> object_tags{"bsdf", "emitter", "film",    "integrato
 /// "#rrggbb", which is sRGB wherever it stands.
 ColorD parse_hexadecimal(const std::string& text, const std::string& place) {
     if (text.size() != 7 || text.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
-        throw InputError(place, fmt::format("expected a colour as #rrggbb, got \"{}\"", text));
+        throw InputError(place, fmt::format("expected a colour as #rrggbb, got \"{}\"", excerpt(text)));
     ColorD color;
     for (unsigned i = 0; i < 3; ++i)
         color[static_cast<int>(i)] = srgb_to_linear(std::stoi(text.substr(1 + 2 * i, 2), nullptr, 16) / 255.0);
@@ -33,7 +33,7 @@ ColorD parse_rgb(const XmlElement& element) {
     if (!text.empty() && text.front() == '#') return parse_hexadecimal(text, element.place);
     const std::vector<double> numbers = parse_numbers(text, element.place);
     if (numbers.size() != 1 && numbers.size() != 3)
-        throw InputError(element.place, fmt::format("expected 1 or 3 numbers, got \"{}\"", text));
+        throw InputError(element.place, fmt::format("expected 1 or 3 numbers, got \"{}\"", excerpt(text)));
     const auto channel = [&](std::size_t i) {
         const double value = numbers[numbers.size() == 1 ? 0 : i];
         return element.tag == "srgb" ? srgb_to_linear(value) : value;

@@ -146,16 +146,32 @@ struct ToUnitBox {
 
 /// The box that becomes the unit box. A point light's intensity is divided by the square of its size, which must
 /// therefore be a double too.
-ToUnitBox make_unit_box(const Bounds& box) {
+ToUnitBox make_unit_box(const Bounds& box, const std::string& place) {
     if (box.is_empty()) return {VectorD(0.0), 1.0};
     const VectorD extent = box.upper - box.lower;
     const double largest = std::max({extent.x, extent.y, extent.z});
     const VectorD centre = (box.lower + box.upper) * 0.5;
     const double unit_length = largest > 0.0 ? largest : 1.0;
     if (!is_finite(centre) || !std::isnormal(unit_length * unit_length))
-        throw InputError(fmt::format("the scene is {} scene units large around ({} {} {}): beyond double precision",
-                                     largest, centre.x, centre.y, centre.z));
+        throw InputError(
+            place, fmt::format("the scene is {} scene units large around ({} {} {}): beyond double precision", largest,
+                               centre.x, centre.y, centre.z));
     return {centre, unit_length};
+}
+
+/// Where the shape stands that reaches farthest from the origin, or the first light where there is no shape.
+std::string place_of_farthest(const SceneDescription& description) {
+    std::string place = description.point_lights.empty() ? description.name : description.point_lights.front().place;
+    double farthest = -1.0;
+    for (const ShapeDescription& shape : description.shapes) {
+        Bounds bounds;
+        include_shape(bounds, shape);
+        const double reach = std::max(bounds.lower.length(), bounds.upper.length());
+        if (!(reach > farthest)) continue;
+        farthest = reach;
+        place = shape.place;
+    }
+    return place;
 }
 
 /// Corners of a triangle, unit box, before they are rounded to float: rounding turns the plane of a sliver.
@@ -248,6 +264,7 @@ Camera make_camera(const CameraDescription& description, std::optional<Resolutio
 /// Lists the lights that have power, and with which probability each is chosen. Ratios of power, not power, so that
 /// light times a constant changes no choice.
 void add_emitters(Scene& scene, const SceneDescription& description, const ToUnitBox& to_unit_box) {
+    std::vector<std::string> places;
     for (std::size_t i = 0; i < description.shapes.size(); ++i) {
         const std::optional<ColorD>& radiance = description.shapes[i].radiance;
         Shape& shape = scene.shapes[i];
@@ -256,6 +273,7 @@ void add_emitters(Scene& scene, const SceneDescription& description, const ToUni
         if (!(mean_channel(power) > 0.0)) continue;
         shape.emitter = static_cast<std::uint32_t>(scene.emitters.size());
         scene.emitters.push_back({AreaLight{*radiance, static_cast<std::uint32_t>(i)}, power, 0.0, 0.0});
+        places.push_back(description.shapes[i].place);
     }
     const double unit_area = to_unit_box.unit_length * to_unit_box.unit_length;
     for (const PointLightDescription& light : description.point_lights) {
@@ -267,9 +285,18 @@ void add_emitters(Scene& scene, const SceneDescription& description, const ToUni
                 fmt::format("position {} {} {} is too far from the scene, which is {} scene units large",
                             light.position.x, light.position.y, light.position.z, to_unit_box.unit_length));
         const ColorD power = intensity * (4.0 * pi);
-        if (mean_channel(power) > 0.0) scene.emitters.push_back({PointLight{intensity, position}, power, 0.0, 0.0});
+        if (!(mean_channel(power) > 0.0)) continue;
+        scene.emitters.push_back({PointLight{intensity, position}, power, 0.0, 0.0});
+        places.push_back(light.place);
     }
     for (const Emitter& emitter : scene.emitters) scene.total_power += mean_channel(emitter.power);
+    if (!std::isfinite(scene.total_power)) {
+        const auto brightest = std::max_element(
+            scene.emitters.begin(), scene.emitters.end(),
+            [](const Emitter& a, const Emitter& b) { return mean_channel(a.power) < mean_channel(b.power); });
+        throw InputError(places[static_cast<std::size_t>(brightest - scene.emitters.begin())],
+                         "the emitted power overflows double precision; scale the lights down");
+    }
     double running = 0.0;
     for (Emitter& emitter : scene.emitters) {
         emitter.choice_probability = mean_channel(emitter.power) / scene.total_power;
@@ -278,8 +305,6 @@ void add_emitters(Scene& scene, const SceneDescription& description, const ToUni
         emitter.photon_power = Color(emitter.power / (emitter.choice_probability * scene.total_power));
     }
     if (!scene.emitters.empty()) scene.emitters.back().choice_cdf = 1.0;
-    if (!std::isfinite(scene.total_power))
-        throw InputError("the emitted power overflows double precision; scale the lights down");
 }
 
 }  // namespace
@@ -296,7 +321,7 @@ Scene build_scene(const SceneDescription& description, std::optional<Resolution>
     if (box.is_empty())
         for (const PointLightDescription& light : description.point_lights) box.include(light.position);
 
-    const ToUnitBox to_unit_box = make_unit_box(box);
+    const ToUnitBox to_unit_box = make_unit_box(box, place_of_farthest(description));
 
     Scene scene;
     scene.name = description.name;
@@ -389,8 +414,8 @@ std::optional<Hit> intersect(const Scene& scene, const Ray& ray) {
     return found;
 }
 
-// Both ends of a segment were moved off their surfaces by far more than this; it only keeps the rounding of its direction
-// from reaching past the far end.
+// Both ends of a segment were moved off their surfaces by far more than this; it only keeps the rounding of its
+// direction from reaching past the far end.
 constexpr float segment_end = 1.0f - 4.0f * std::numeric_limits<float>::epsilon();
 
 bool is_occluded(const Scene& scene, const Segment& segment) {

@@ -112,8 +112,8 @@ Spectrum parse_spectrum(const std::string& text, const std::string& place) {
     const std::vector<double> numbers = parse_numbers(spaced, place);
     const auto pairs = static_cast<std::size_t>(std::count(text.begin(), text.end(), ':'));
     if (pairs < 2 || numbers.size() != 2 * pairs)
-        throw InputError(place,
-                         fmt::format("expected a spectrum as at least two pairs wavelength:value, got \"{}\"", text));
+        throw InputError(place, fmt::format("expected a spectrum as at least two pairs wavelength:value, got \"{}\"",
+                                            excerpt(text)));
     Spectrum spectrum;
     for (std::size_t i = 0; i < pairs; ++i) {
         if (i > 0 && numbers[2 * i] <= numbers[2 * i - 2])

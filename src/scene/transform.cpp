@@ -10,7 +10,7 @@ namespace {
 
 VectorD parse_three(const std::string& text, const std::string& place) {
     const std::vector<double> numbers = parse_numbers(text, place);
-    if (numbers.size() != 3) throw InputError(place, fmt::format("expected 3 numbers, got \"{}\"", text));
+    if (numbers.size() != 3) throw InputError(place, fmt::format("expected 3 numbers, got \"{}\"", excerpt(text)));
     return {numbers[0], numbers[1], numbers[2]};
 }
 
@@ -89,7 +89,7 @@ VectorD parse_vector(const XmlElement& element, double missing) {
         const std::vector<double> numbers = parse_numbers(text, element.place);
         if (numbers.size() == 1) return VectorD(numbers[0]);
         if (numbers.size() != 3)
-            throw InputError(element.place, fmt::format("expected 1 or 3 numbers, got \"{}\"", text));
+            throw InputError(element.place, fmt::format("expected 1 or 3 numbers, got \"{}\"", excerpt(text)));
         return {numbers[0], numbers[1], numbers[2]};
     }
     VectorD result(missing);
@@ -108,7 +108,8 @@ VectorD parse_vector(const XmlElement& element, double missing) {
 Matrix parse_transform(const XmlElement& element) {
     Matrix result;
     for (const XmlElement& child : element.children) result = result * parse_element(child);
-    if (!(std::abs(handedness(result)) > 0.0) || !std::isfinite(handedness(result)))
+    const bool is_finite_translation = is_finite(VectorD(result[3][0], result[3][1], result[3][2]));
+    if (!(std::abs(handedness(result)) > 0.0) || !std::isfinite(handedness(result)) || !is_finite_translation)
         throw InputError(element.place, "expected an invertible transform with finite values");
     return result;
 }

@@ -7,12 +7,11 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <pugixml.hpp>
 #include <set>
-#include <sstream>
 
 #include "core/error.h"
+#include "core/files.h"
 
 namespace photonlab {
 
@@ -21,7 +20,9 @@ namespace {
 constexpr int include_limit = 15;                 // nested files, as in Mitsuba
 constexpr int nesting_limit = 100;                // elements inside elements of one file
 constexpr std::size_t element_limit = 1'000'000;  // in all files together
-constexpr std::size_t value_limit = 65'536;       // characters of a value once $names are put in
+constexpr std::size_t file_limit = 1000;          // files read: what includes each other twice doubles at every level
+constexpr std::size_t value_limit = 65'536;       // characters, once $names are put in
+constexpr std::size_t xml_size_limit = std::size_t{32} << 20;  // of all files together; geometry is in files of its own
 constexpr std::uintmax_t size_limit = std::uintmax_t{2} << 30;
 
 /// Offsets at which lines start, to turn pugixml's byte offsets into line numbers.
@@ -106,6 +107,17 @@ void require_structure(const XmlElement& element, const pugi::xml_node& node) {
             throw InputError(element.place, fmt::format("unexpected <{}> inside <{}>", child.name(), element.tag));
 }
 
+std::string_view trim(std::string_view text) {
+    const auto is_space = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
+    while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+    while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+std::ptrdiff_t leading_blanks(std::string_view text) {
+    return static_cast<std::ptrdiff_t>(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+}
+
 bool is_name_character(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
 }
@@ -125,20 +137,38 @@ public:
             throw InputError(from, fmt::format("expected at most {} nested includes", include_limit));
         open_files_.push_back(canonical);
 
+        if (++files_ > file_limit)
+            throw InputError(from, fmt::format("expected at most {} files included", file_limit));
         const std::string text = read_whole_file(file, from);
         bytes_read_ += text;
-        if (bytes_read_.size() > size_limit)
-            throw InputError(from, "expected a scene and its includes to be at most 2 GiB");
+        if (bytes_read_.size() > xml_size_limit)
+            throw InputError(from, fmt::format("expected a scene file and what it includes to have at most {} bytes",
+                                               xml_size_limit));
         const LineNumbers lines(text);
+        const auto place_at = [&](std::ptrdiff_t offset) {
+            return fmt::format("{}:{}", file.string(), lines.at(offset));
+        };
+        if (const std::size_t bad = find_no_text(text); bad != text.npos)
+            throw InputError(
+                place_at(static_cast<std::ptrdiff_t>(bad)),
+                fmt::format("expected UTF-8 text, got byte {:#04x}", static_cast<unsigned char>(text[bad])));
+        // As a fragment, so that text and a second root are seen, which would otherwise be dropped without a word.
         pugi::xml_document document;
-        const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size());
+        const pugi::xml_parse_result parsed = document.load_buffer(
+            text.data(), text.size(), pugi::parse_default | pugi::parse_fragment, pugi::encoding_utf8);
         if (!parsed)
-            throw InputError(fmt::format("{}:{}", file.string(), lines.at(parsed.offset)),
-                             fmt::format("not well-formed XML: {}", parsed.description()));
+            throw InputError(place_at(parsed.offset), fmt::format("not well-formed XML: {}", parsed.description()));
         const pugi::xml_node root = document.document_element();
+        if (!root) throw InputError(file.string(), "expected <scene>, got no element");
+        for (const pugi::xml_node& node : document.children())
+            if (node != root)
+                throw InputError(place_at(node.offset_debug() + leading_blanks(node.value())),
+                                 node.type() == pugi::node_element
+                                     ? fmt::format("expected one <scene>, got <{}> beside it", excerpt(node.name()))
+                                     : fmt::format("unexpected text \"{}\" outside <scene>", excerpt(node.value())));
         if (std::string_view(root.name()) != "scene")
-            throw InputError(fmt::format("{}:{}", file.string(), lines.at(root.offset_debug())),
-                             fmt::format("expected <scene>, got <{}>", root.name()));
+            throw InputError(place_at(root.offset_debug()),
+                             fmt::format("expected <scene>, got <{}>", excerpt(root.name())));
         XmlElement scene = convert(root, file, lines, 1);
         open_files_.pop_back();
         return scene;
@@ -174,8 +204,8 @@ private:
         require_structure(element, node);
         for (const pugi::xml_node& child : node.children()) {
             if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata)
-                throw InputError(element.place,
-                                 fmt::format("unexpected text \"{}\" inside <{}>", child.value(), element.tag));
+                throw InputError(element.place, fmt::format("unexpected text \"{}\" inside <{}>",
+                                                            excerpt(child.value()), element.tag));
             if (child.type() != pugi::node_element) continue;
             XmlElement converted = convert(child, file, lines, depth + 1);
             if (converted.tag == "default") {
@@ -209,11 +239,11 @@ private:
             if (length == 0)
                 throw InputError(place, fmt::format("${} has no <default> before it and no value was given", name));
             result += *lookup(name.substr(0, length));
-            if (result.size() > value_limit)
-                throw InputError(place,
-                                 fmt::format("expected at most {} characters once $names are put in", value_limit));
+            if (result.size() > value_limit) break;
             i += 1 + length;
         }
+        if (result.size() > value_limit)
+            throw InputError(place, fmt::format("expected at most {} characters in a value", value_limit));
         return result;
     }
 
@@ -233,14 +263,8 @@ private:
     std::set<std::string> used_;
     std::vector<std::filesystem::path> open_files_;
     std::size_t elements_ = 0;
+    std::size_t files_ = 0;
 };
-
-std::string_view trim(std::string_view text) {
-    const auto is_space = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
-    while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-    while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-    return text;
-}
 
 }  // namespace
 
@@ -256,9 +280,13 @@ const std::string& XmlElement::require(std::string_view name) const {
 }
 
 std::filesystem::path XmlElement::file_called(const std::string& name) const {
+    if (name.empty()) throw InputError(place, fmt::format("<{}>: expected the name of a file, it is empty", tag));
     const std::filesystem::path beside_scene = scene_folder / name;
     const std::filesystem::path beside_own = own_folder / name;
-    return !std::filesystem::exists(beside_scene) && std::filesystem::exists(beside_own) ? beside_own : beside_scene;
+    std::error_code ignored;  // whoever reads the file says what is wrong with its name
+    const bool is_beside_own =
+        !std::filesystem::exists(beside_scene, ignored) && std::filesystem::exists(beside_own, ignored);
+    return is_beside_own ? beside_own : beside_scene;
 }
 
 XmlElement read_scene_xml(const std::filesystem::path& file, const std::map<std::string, std::string>& parameters,
@@ -270,18 +298,29 @@ XmlElement read_scene_xml(const std::filesystem::path& file, const std::map<std:
 }
 
 std::string read_whole_file(const std::filesystem::path& file, const std::string& place) {
-    std::error_code failed;
-    const bool regular = std::filesystem::is_regular_file(file, failed);
-    std::ifstream stream(file, std::ios::binary);
-    if (failed || !regular || !stream) {
-        const std::string message = fmt::format("cannot read the file \"{}\"", file.string());
-        throw place == file.string() ? InputError(message) : InputError(place, message);
+    try {
+        return read_text_file(file, size_limit);
+    } catch (const InputError& error) {
+        if (place == file.string()) throw;
+        throw InputError(place, error.what());
     }
-    if (std::filesystem::file_size(file) > size_limit)
-        throw InputError(place, fmt::format("expected \"{}\" to be at most 2 GiB", file.string()));
-    std::ostringstream text;
-    text << stream.rdbuf();
-    return text.str();
+}
+
+std::string read_part(const std::filesystem::path& file, const std::string& place, std::string& bytes_read) {
+    std::string bytes = read_whole_file(file, place);
+    if (bytes_read.size() + bytes.size() > size_limit)
+        throw InputError(place,
+                         fmt::format("expected a scene and the files that it names to have at most {} bytes, each "
+                                     "counted as often as it is named",
+                                     size_limit));
+    bytes_read += bytes;
+    return bytes;
+}
+
+std::string excerpt(std::string_view text) {
+    constexpr std::size_t longest = 60;
+    const std::string_view line = trim(trim(text).substr(0, trim(text).find_first_of("\r\n")));
+    return std::string(line.substr(0, longest)) + (line.size() > longest ? "..." : "");
 }
 
 double parse_number(std::string_view text, const std::string& place) {
@@ -291,11 +330,12 @@ double parse_number(std::string_view text, const std::string& place) {
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (digits.empty() || error == std::errc::invalid_argument || end != digits.data() + digits.size() ||
         (error == std::errc() && !std::isfinite(value)))
-        throw InputError(place, fmt::format("expected a finite number, got \"{}\"", text));
+        throw InputError(place, fmt::format("expected a finite number, got \"{}\"", excerpt(text)));
     if (error == std::errc::result_out_of_range) {
         // Too small is 0 for every purpose here; too large is not a number to render with.
         const double rough = std::strtod(std::string(digits).c_str(), nullptr);
-        if (!std::isfinite(rough)) throw InputError(place, fmt::format("expected a finite number, got \"{}\"", text));
+        if (!std::isfinite(rough))
+            throw InputError(place, fmt::format("expected a finite number, got \"{}\"", excerpt(text)));
         return rough;
     }
     return value;
@@ -306,7 +346,7 @@ long parse_integer(std::string_view text, const std::string& place) {
     long value = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error != std::errc() || digits.empty() || end != digits.data() + digits.size())
-        throw InputError(place, fmt::format("expected a whole number, got \"{}\"", text));
+        throw InputError(place, fmt::format("expected a whole number, got \"{}\"", excerpt(text)));
     return value;
 }
 
@@ -315,7 +355,7 @@ bool parse_boolean(std::string_view text, const std::string& place) {
     for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     if (word == "true") return true;
     if (word == "false") return false;
-    throw InputError(place, fmt::format("expected true or false, got \"{}\"", text));
+    throw InputError(place, fmt::format("expected true or false, got \"{}\"", excerpt(text)));
 }
 
 std::vector<double> parse_numbers(std::string_view text, const std::string& place) {

@@ -39,6 +39,13 @@ XmlElement read_scene_xml(const std::filesystem::path& file, const std::map<std:
 /// Whole file as text; InputError at `place` when it cannot be read or is larger than 2 GiB.
 std::string read_whole_file(const std::filesystem::path& file, const std::string& place);
 
+/// A file that a scene names, which is also appended to `bytes_read`: all of them together have at most 2 GiB, for a
+/// small scene can name a large file any number of times. InputError at `place`.
+std::string read_part(const std::filesystem::path& file, const std::string& place, std::string& bytes_read);
+
+/// For messages: the first line, and of a long one its beginning.
+std::string excerpt(std::string_view text);
+
 // Values. Each throws InputError at `place` unless the whole text is one.
 
 double parse_number(std::string_view text, const std::string& place);

@@ -95,63 +95,6 @@ TEST_F(ExperimentFile, SmokeShrinksPassesPhotonsAndSeeds) {
     EXPECT_EQ(experiment.runs[0].settings.values.photons_per_pass, 2000u);
 }
 
-TEST_F(ExperimentFile, RefusesBadInputWithItsPlace) {
-    struct Case {
-        std::string text;
-        std::string message;  // how it begins
-    };
-    const std::vector<Case> cases{
-        {"scenes = [", ":1: "},
-        {"passes = 8\n" + ppm, ": scenes: expected a list of scene files"},
-        {"scenes = [\"lamp.xml\"]\n" + ppm, ": passes is missing"},
-        {least, ": method: expected at least one table [[method]]"},
-        {least + "colour = 1\n" + ppm,
-         ":3: unknown key \"colour\"; known here: title, scenes, method, seeds, passes, record"},
-        {least + ppm + "alhpa = 0.5\n",
-         ":5: unknown key \"alhpa\"; known here: name, passes, integrator, mode, schedule, alpha"},
-        {"scenes = [{ path = \"lamp.xml\", light = 1 }]\npasses = 1\n" + ppm,
-         ":1: unknown key \"light\"; known here: path"},
-        {"scenes = [\"gone.xml\"]\npasses = 1\n" + ppm, ":1: scenes: "},
-        {"scenes = [{ path = \"lamp.xml\", reference = \"gone\" }]\npasses = 1\n" + ppm, ":1: reference: "},
-        {least + "[[method]]\nalpha = 0.5\n", ":3: method: integrator is missing"},
-        {least + "[[method]]\nintegrator = \"pmm\"\n",
-         ":4: unknown integrator \"pmm\"; known here: path, photonmapper, ppm"},
-        {least + ppm + "k = 50\n", ":5: k is not used by integrator \"ppm\""},
-        {least + "[[method]]\nintegrator = \"photonmapper\"\nk = 50\n",
-         ":5: k is not used by integrator \"photonmapper\""},
-        {least + ppm + "alpha = [0.5, 0.0]\n", ":5: "},
-        {least + ppm + "alpha = nan\n", ":5: "},
-        {least + ppm + "alpha = \"half\"\n", ":5: alpha: expected a number, got \"half\""},
-        {least + ppm + "alpha = []\n", ":5: alpha: the list of values is empty"},
-        {least + ppm + "alpha = [[0.5]]\n", ":5: alpha: expected a number, a name, or a list of those"},
-        {least + ppm + "alpha = [0.5, 0.5]\n", ":3: two runs are called box_ppm_alpha-0.5_seed-1"},
-        {least + ppm + ppm, ":5: two runs are called box_ppm_seed-1"},
-        {least + ppm + "radius = -1\n", ":5: radius: expected \"auto\" or a length above 0"},
-        {least + ppm + "radius = true\n", ":5: radius: expected \"auto\" or a length in scene units, got true"},
-        {least + ppm + "kernel = \"box\"\n", ":5: unknown kernel \"box\"; known here: disc"},
-        {least + ppm + "eps = -0.5\n", ":5: eps: expected at least 0"},
-        {least + ppm + "branch_cutoff = 0\n", ":5: branch_cutoff: expected a throughput from 1e-12 to 1, got 0"},
-        {least + ppm + "direct_samples = 0\n", ":5: direct_samples: expected at least 1"},
-        {least + ppm + "photons_per_pass = 0\n", ":5: photons_per_pass: expected at least 1"},
-        {least + ppm + "max_depth = 0\n", ":5: max_depth: expected -1"},
-        {least + "k = 50\n" + ppm, ":3: k is used by no method"},
-        {least + "seeds = 0\n" + ppm, ":3: seeds: expected a whole number from 1 to"},
-        {least + "seeds = [1, 1]\n" + ppm, ":4: two runs are called"},
-        {least + "record = \"some\"\n" + ppm, ":3: unknown record \"some\"; known here: all, powers-of-two"},
-        {least + "record = [9]\n" + ppm, ":3: record: expected a whole number from 0 to 8, got 9"},
-        {least + "snapshots = [-1]\n" + ppm, ":3: snapshots: expected a whole number from 0 to 8, got -1"},
-        {least + "resolution = [16]\n" + ppm, ":3: resolution: expected [width, height]"},
-        {least + "samples_per_pixel = 3\n" + ppm, ":3: samples_per_pixel: expected a perfect square"},
-        {least + "threads = 0\n" + ppm, ":3: threads: expected a whole number from 1"},
-        {"scenes = [\"lamp.xml\"]\npasses = 1.5\n" + ppm, ":2: passes: expected a whole number"},
-    };
-    for (const Case& bad : cases) {
-        const std::string message = refusal(bad.text);
-        EXPECT_TRUE(message.starts_with(bad.message))
-            << bad.text << "\n  says:     " << message << "\n  expected: " << bad.message;
-    }
-}
-
 TEST_F(ExperimentFile, TheDemonstrationIsSound) {
     const std::filesystem::path demo = std::filesystem::path(PHOTONLAB_SOURCE_DIR) / "experiments/demo.toml";
     if (!std::filesystem::exists(std::filesystem::path(PHOTONLAB_SOURCE_DIR) / "reference/cornell-box"))
@@ -175,17 +118,6 @@ TEST_F(ExperimentFile, ScenesHaveRegionsAndProbes) {
     EXPECT_EQ(experiment.scenes[0].probes[0].y, 6);
     EXPECT_FALSE(read(least + ppm).decomposition);
     EXPECT_EQ(read(least + ppm).runs[0].point, "box_ppm");
-
-    const auto with = [&](const std::string& what) {
-        return refusal("passes = 8\nscenes = [{ path = \"lamp.xml\", " + what + " }]\n" + ppm);
-    };
-    EXPECT_EQ(with("regions = { a = [1, 2, 3] }"), ":2: a: expected [left, top, right, bottom]");
-    EXPECT_EQ(with("regions = { a = [3, 2, 3, 4] }"), ":2: a: expected left < right and top < bottom");
-    EXPECT_EQ(with("regions = { image = [1, 2, 3, 4] }"), ":2: image: is the name of the whole image");
-    EXPECT_EQ(with("regions = { \"a b\" = [1, 2, 3, 4] }"), ":2: regions: \"a b\" is no name for a file");
-    EXPECT_EQ(with("probes = { a = [1] }"), ":2: a: expected [x, y]");
-    EXPECT_EQ(with("probes = [1, 2]"), ":2: probes: expected a table of names, each [x, y]");
-    EXPECT_EQ(refusal("decomposition = 1\n" + least + ppm), ":1: decomposition: expected true or false");
 }
 
 }  // namespace

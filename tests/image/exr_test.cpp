@@ -242,7 +242,7 @@ TEST(Exr, LeavesNoTemporaryFileWhenTheFinalNameIsTaken) {
 
 TEST(Exr, RefusesWhatIsNotThereOrAFolder) {
     const ScratchFolder folder;
-    EXPECT_MESSAGE(read_exr(folder / "none.exr"), "none.exr: cannot be opened: No such file");
+    EXPECT_MESSAGE(read_exr(folder / "none.exr"), "none.exr: cannot be read: No such file");
     EXPECT_MESSAGE(read_exr(folder.path()), "is a folder");
 }
 

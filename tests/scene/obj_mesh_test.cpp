@@ -55,36 +55,6 @@ double area_of(const MeshDescription& mesh) {
     return area;
 }
 
-TEST_F(ObjMeshTest, EveryBadLineIsNamed) {
-    std::string long_face = "f";
-    for (int i = 0; i < 256; ++i) long_face += " 1";
-    const std::vector<std::pair<std::string, std::string>> table{
-        {"", "mesh.obj: expected at least one face"},
-        {square, "mesh.obj: expected at least one face"},
-        {"v 0 0\n", "mesh.obj:1: v: expected 3 numbers, got 2"},
-        {"v 0 0 inf\n", "mesh.obj:1: expected a finite number, got \"inf\""},
-        {"v 0 0 1e999\n", "mesh.obj:1: expected a finite number, got \"1e999\""},
-        {"v 0 0 0x10\n", "mesh.obj:1: expected a finite number, got \"0x10\""},
-        {"vt\n", "mesh.obj:1: vt: expected 1 numbers, got 0"},
-        {"vn 0 0 0\n", "mesh.obj:1: vn: expected a direction, got 0 0 0"},
-        {square + "f 1 2\n", "mesh.obj:5: f: expected 3 to 255 corners, got 2"},
-        {square + long_face + "\n", "mesh.obj:5: f: expected 3 to 255 corners, got 256"},
-        {square + "f 1 2 9\n", "mesh.obj:5: a face names vertex 9, but there are 4"},
-        {square + "f 1 2 3\nf 1 2 3 9\n", "mesh.obj:6: a face names vertex 9, but there are 4"},
-        {square + "f 1 2 0\n", "mesh.obj:5: a face names vertex 0, but there are 4"},
-        {square + "f -5 2 3\n", "mesh.obj:5: a face names vertex -5, but there are 4 before it"},
-        {square + "f 1 2 99999999999999999999\n", "mesh.obj:5: expected a whole number, got \"99999999999999999999\""},
-        {square + "f 1 2.5 3\n", "mesh.obj:5: expected a whole number, got \"2.5\""},
-        {square + "f 1 2 3junk\n", "mesh.obj:5: expected a whole number, got \"3junk\""},
-        {square + "f 1 2 \\\n3\n", "mesh.obj:5: expected a whole number, got \"\\\""},
-        {square + "f 1/ 2/ 3/\n", "mesh.obj:5: f: expected a corner as 1, 1/2, 1//3 or 1/2/3, got \"1/\""},
-        {square + "f 1/1/1/1 2 3\n", "mesh.obj:5: a face names texture coordinate 1, but there are 0"},
-        {square + "vn 0 0 1\nf 1//1 2//1 3//2\n", "mesh.obj:6: a face names normal 2, but there are 1"},
-        {square + "vt 0 0\nf 1/1 2/1 3/2\n", "mesh.obj:6: a face names texture coordinate 2, but there are 1"},
-    };
-    for (const auto& [text, message] : table) EXPECT_EQ(message_of(text), message) << text;
-}
-
 TEST_F(ObjMeshTest, LinesEndInEveryWayAndAreCountedTheSame) {
     for (const std::string end : {"\n", "\r\n", "\r"}) {
         const std::string vertices = "v 0 0 0" + end + "v 1 0 0" + end + "v 0 1 0" + end;

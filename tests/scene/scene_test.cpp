@@ -434,9 +434,9 @@ TEST(BuildScene, RefusesWhatCannotBeRendered) {
     EXPECT_EQ(message(describe({shape(DiskDescription{{0, 0, 0}, VectorD(nan), 1.0})})),
               "test:1: expected a disk's normal of unit length");
     EXPECT_EQ(message(describe({shape(SphereDescription{{0, 0, 0}, 1e-200, false})})),
-              "the scene is 2e-200 scene units large around (0 0 0): beyond double precision");
+              "test:1: the scene is 2e-200 scene units large around (0 0 0): beyond double precision");
     EXPECT_EQ(message(describe({shape(SphereDescription{{0, 0, 0}, 1e200, false})})),
-              "the scene is 2e+200 scene units large around (0 0 0): beyond double precision");
+              "test:1: the scene is 2e+200 scene units large around (0 0 0): beyond double precision");
 }
 
 // ---------------------------------------------------------------------------------------------------------------------

@@ -229,7 +229,7 @@ std::shared_ptr<const MerlTable> make_merl_table(const std::vector<double>& numb
 
 std::shared_ptr<const MerlTable> load_merl_table(const std::filesystem::path& file, const std::string& place,
                                                  std::string& bytes_read) {
-    const std::string bytes = read_whole_file(file, place);
+    const std::string bytes = read_part(file, place, bytes_read);
     std::int32_t dimensions[3];
     const bool has_dimensions = bytes.size() >= sizeof(dimensions);
     if (has_dimensions) std::memcpy(dimensions, bytes.data(), sizeof(dimensions));
@@ -244,7 +244,6 @@ std::shared_ptr<const MerlTable> load_merl_table(const std::filesystem::path& fi
                                               : ""));
     std::vector<double> numbers(3 * static_cast<std::size_t>(MerlTable::bins));
     std::memcpy(numbers.data(), bytes.data() + sizeof(dimensions), numbers.size() * sizeof(double));
-    bytes_read += bytes;
     return make_merl_table(numbers, place + ": " + file.string());
 }
 
