@@ -7,6 +7,7 @@
 #include <chrono>
 #include <numeric>
 
+#include "core/parallel.h"
 #include "integrators/registry.h"
 
 namespace photonlab {
@@ -17,10 +18,18 @@ double steady_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-double process_cpu_seconds() {
+double cpu_seconds(clockid_t clock) {
     timespec time{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    clock_gettime(clock, &time);
     return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+double process_cpu_seconds() {
+    return cpu_seconds(CLOCK_PROCESS_CPUTIME_ID);
+}
+
+double thread_cpu_seconds() {
+    return cpu_seconds(CLOCK_THREAD_CPUTIME_ID);
 }
 
 }  // namespace
@@ -46,6 +55,22 @@ void StageClock::enter(Stage stage) {
     stage_ = stage;
     began_ = steady_seconds();
     cpu_began_ = process_cpu_seconds();
+}
+
+StageTimes times_alone(const OverlappedWork& work, std::size_t method) {
+    const double direct_cpu = work.direct_cpu[method];
+    const double own_cpu = work.build_cpu + direct_cpu;
+    const double all_cpu = std::accumulate(work.direct_cpu.begin(), work.direct_cpu.end(), work.build_cpu);
+    StageTimes times;
+    if (!(own_cpu > 0.0)) return times;
+    const double seconds = std::max(work.build_seconds, work.seconds * (own_cpu / all_cpu));
+    const auto build = static_cast<std::size_t>(Stage::Build);
+    const auto direct = static_cast<std::size_t>(Stage::Direct);
+    times.seconds[build] = seconds * (work.build_cpu / own_cpu);
+    times.seconds[direct] = seconds * (direct_cpu / own_cpu);
+    times.cpu_seconds[build] = work.build_cpu;
+    times.cpu_seconds[direct] = direct_cpu;
+    return times;
 }
 
 void StageClock::stop() {
@@ -80,6 +105,43 @@ StageTimes timed(Stage stage, const Step& step) {
 void charge(std::vector<RunningMethod>& methods, PhotonNeed need, const StageTimes& times) {
     for (RunningMethod& method : methods)
         if (method.needs == need) method.passes_alone += times;
+}
+
+/// Indexes the photons of the pass and samples the direct light of the methods that gather them, which needs no
+/// photons: FLANN builds on one thread, and the others would wait for it.
+void index_and_light(PhotonSupply& photons, std::vector<RunningMethod>& methods, std::uint64_t pass, int threads) {
+    struct DirectBlock {
+        std::size_t method;
+        std::size_t block;
+    };
+    std::vector<std::size_t> gathering;
+    std::vector<DirectBlock> blocks;
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        if (methods[i].needs != PhotonNeed::PassMap) continue;
+        const std::size_t count = methods[i].integrator->begin_direct(pass);
+        for (std::size_t block = 0; block < count; ++block) blocks.push_back({gathering.size(), block});
+        gathering.push_back(i);
+    }
+
+    OverlappedWork work;
+    work.direct_cpu.assign(gathering.size(), 0.0);
+    std::vector<double> cpu_of(blocks.size());
+    const double began = steady_seconds();
+    parallel_for(1 + blocks.size(), threads, [&](std::size_t item) {
+        const double cpu_began = thread_cpu_seconds();
+        if (item == 0) {
+            photons.index_pass();
+            work.build_seconds = steady_seconds() - began;
+            work.build_cpu = thread_cpu_seconds() - cpu_began;
+        } else {
+            const DirectBlock& direct = blocks[item - 1];
+            methods[gathering[direct.method]].integrator->add_direct(direct.block);
+            cpu_of[item - 1] = thread_cpu_seconds() - cpu_began;
+        }
+    });
+    work.seconds = steady_seconds() - began;
+    for (std::size_t i = 0; i < blocks.size(); ++i) work.direct_cpu[blocks[i].method] += cpu_of[i];
+    for (std::size_t i = 0; i < gathering.size(); ++i) methods[gathering[i]].passes_alone += times_alone(work, i);
 }
 
 PhotonSettings photons_of(const RunSettings& settings) {
@@ -165,7 +227,7 @@ std::vector<RunState> run_methods(const Scene& scene, const HitPoints& hit_point
         }
         if (needs_all_passes)
             charge(methods, PhotonNeed::AllPassesMaps, timed(Stage::Build, [&] { photons.add_pass(); }));
-        if (needs_pass_map) charge(methods, PhotonNeed::PassMap, timed(Stage::Build, [&] { photons.index_pass(); }));
+        if (needs_pass_map) index_and_light(photons, methods, pass, common.threads);
         for (std::size_t i = 0; i < methods.size(); ++i) {
             RunningMethod& method = methods[i];
             StageClock clock;

@@ -45,6 +45,18 @@ private:
     StageTimes times_;
 };
 
+/// The photons of a pass indexed on one thread, while the others sample direct light at the hit points of every method.
+struct OverlappedWork {
+    double seconds = 0.0;            ///< from the first of it to the last
+    double build_seconds = 0.0;      ///< of indexing
+    double build_cpu = 0.0;          ///< its CPU time
+    std::vector<double> direct_cpu;  ///< of direct light, one a method
+};
+
+/// What it would have taken `method` alone: its own CPU time; of seconds, that share of all which its share of the CPU
+/// time is, but at least what indexing took. They are divided between Build and Direct as the CPU time is.
+StageTimes times_alone(const OverlappedWork& work, std::size_t method);
+
 struct RunSettings {
     MethodSettings method;  ///< with max_depth resolved
     std::uint64_t seed = 1;

@@ -74,6 +74,15 @@ public:
     /// begin at any pass: their images are means over the passes they took, and can be joined.
     virtual void run_pass(std::uint64_t pass, const PhotonSupply& photons, const StageListener& enter) = 0;
 
+    /// What of pass `pass` needs no photons, direct light, so that it can be done while they are being indexed: begins
+    /// it and returns in how many blocks it comes. Whoever calls this calls add_direct() once for each of them, on any
+    /// thread and in any order, before run_pass(), which otherwise does it all.
+    virtual std::size_t begin_direct(std::uint64_t pass) {
+        static_cast<void>(pass);
+        return 0;
+    }
+    virtual void add_direct(std::size_t block) { static_cast<void>(block); }
+
     /// The image after the passes so far, layers "emission", "direct" and "gathered". After no pass at all: emission,
     /// and direct light sampled once for this alone. Changes nothing that later passes depend on.
     virtual Image estimate(const PhotonSupply& photons, const StageListener& enter) = 0;

@@ -74,32 +74,44 @@ DirectLight::DirectLight(const IntegratorContext& context, const MethodSettings&
     if (samples_ > 0) sums_.assign(context.hit_points.points.size(), ColorD(0.0));
 }
 
-void DirectLight::add_samples(std::uint64_t pass, std::vector<ColorD>& sums) const {
+std::size_t DirectLight::blocks() const {
+    return samples_ == 0 ? 0 : block_count(context_.hit_points.points.size(), hit_points_per_block);
+}
+
+void DirectLight::add_samples(std::uint64_t pass, std::size_t block, std::vector<ColorD>& sums) const {
     const std::vector<HitPoint>& points = context_.hit_points.points;
-    parallel_for(block_count(points.size(), hit_points_per_block), context_.threads, [&](std::size_t block) {
-        const BlockRange range = block_range(block, points.size(), hit_points_per_block);
-        std::array<ColorD, hit_points_per_block> sum_of;
-        sum_of.fill(ColorD(0.0));
-        WaitingConnections waiting;
-        for (std::size_t i = range.begin; i < range.end; ++i) {
-            if (!depth_allows(max_depth_, points[i].camera_edges + 1u)) continue;
-            RandomStream random(context_.seed, context_.direct_purpose, pass, i);
-            const Surface surface = surface_at(context_.scene, points[i]);
-            for (int sample = 0; sample < samples_; ++sample) {
-                const auto connection = draw_connection(context_.scene, surface, points[i].outgoing, random);
-                if (connection) waiting.add(context_.scene, *connection, sum_of[i - range.begin]);
-            }
+    const BlockRange range = block_range(block, points.size(), hit_points_per_block);
+    std::array<ColorD, hit_points_per_block> sum_of;
+    sum_of.fill(ColorD(0.0));
+    WaitingConnections waiting;
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+        if (!depth_allows(max_depth_, points[i].camera_edges + 1u)) continue;
+        RandomStream random(context_.seed, context_.direct_purpose, pass, i);
+        const Surface surface = surface_at(context_.scene, points[i]);
+        for (int sample = 0; sample < samples_; ++sample) {
+            const auto connection = draw_connection(context_.scene, surface, points[i].outgoing, random);
+            if (connection) waiting.add(context_.scene, *connection, sum_of[i - range.begin]);
         }
-        waiting.trace(context_.scene);
-        for (std::size_t i = range.begin; i < range.end; ++i)
-            sums[i] += sum_of[i - range.begin] / static_cast<double>(samples_);
-    });
+    }
+    waiting.trace(context_.scene);
+    for (std::size_t i = range.begin; i < range.end; ++i)
+        sums[i] += sum_of[i - range.begin] / static_cast<double>(samples_);
+}
+
+void DirectLight::add_samples(std::uint64_t pass, std::vector<ColorD>& sums) const {
+    parallel_for(blocks(), context_.threads, [&](std::size_t block) { add_samples(pass, block, sums); });
+}
+
+std::size_t DirectLight::begin_pass(std::uint64_t pass) {
+    begun_ = pass;
+    if (samples_ > 0) ++passes_;
+    return blocks();
 }
 
 void DirectLight::run_pass(std::uint64_t pass) {
-    if (samples_ == 0) return;
+    if (begun_ == pass) return;
+    begin_pass(pass);
     add_samples(pass, sums_);
-    ++passes_;
 }
 
 std::vector<Color> DirectLight::layer() const {

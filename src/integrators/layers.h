@@ -29,6 +29,11 @@ class DirectLight {
 public:
     DirectLight(const IntegratorContext& context, const MethodSettings& settings);
 
+    /// Begins the pass; the number of blocks for add_block(), each to be called once, on any thread, before the next.
+    std::size_t begin_pass(std::uint64_t pass);
+    void add_block(std::size_t block) { add_samples(begun_, block, sums_); }
+
+    /// The whole pass, unless it was begun before.
     void run_pass(std::uint64_t pass);
 
     /// The layer: mean over the passes so far. Before the first pass, one sampling made for this call alone.
@@ -43,12 +48,15 @@ public:
     std::uint64_t bytes() const { return sums_.size() * sizeof(ColorD); }
 
 private:
+    std::size_t blocks() const;
+    void add_samples(std::uint64_t pass, std::size_t block, std::vector<ColorD>& sums) const;
     void add_samples(std::uint64_t pass, std::vector<ColorD>& sums) const;
 
     const IntegratorContext context_;
     int samples_;  // 0: photons carry direct light
     int max_depth_;
     std::uint64_t passes_ = 0;
+    std::uint64_t begun_ = 0;   // the last pass that was begun, counted from 1
     std::vector<ColorD> sums_;  // one a hit point
 };
 

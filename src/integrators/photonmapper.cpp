@@ -47,6 +47,9 @@ public:
         direct_.run_pass(pass);
     }
 
+    std::size_t begin_direct(std::uint64_t pass) override { return direct_.begin_pass(pass); }
+    void add_direct(std::size_t block) override { direct_.add_block(block); }
+
     Image estimate(const PhotonSupply& photons, const StageListener& enter) override {
         enter(Stage::Direct);
         std::vector<Color> direct = direct_.layer();

@@ -134,8 +134,29 @@ TEST_F(Runner, MethodsThatShareTheirPhotonsAreAllChargedForThem) {
     EXPECT_GT(states[0].times.of(Stage::Trace), 0.0);
     EXPECT_GT(states[0].times.of(Stage::Build), 0.0);
     for (const RunState& state : states) EXPECT_EQ(state.times.of(Stage::Trace), states[0].times.of(Stage::Trace));
-    EXPECT_EQ(states[1].times.of(Stage::Build), states[0].times.of(Stage::Build));
+    constexpr auto build = static_cast<std::size_t>(Stage::Build);
+    EXPECT_EQ(states[1].times.cpu_seconds[build], states[0].times.cpu_seconds[build]);
     EXPECT_GT(states[2].times.of(Stage::Build), 0.0);
+}
+
+TEST(OverlappedWork, OfOneMethodIsDividedInProportionToItsCpuTime) {
+    const StageTimes times =
+        times_alone({.seconds = 4.0, .build_seconds = 3.5, .build_cpu = 3.0, .direct_cpu = {2.0}}, 0);
+    EXPECT_DOUBLE_EQ(times.of(Stage::Build), 2.4);
+    EXPECT_DOUBLE_EQ(times.of(Stage::Direct), 1.6);
+    EXPECT_DOUBLE_EQ(times.cpu_total(), 5.0);
+    EXPECT_EQ(times_alone({.direct_cpu = {0.0}}, 0).total(), 0.0);
+}
+
+// Two threads: 3 s of building beside 9 s of direct light take 6 s. Alone, the first method would have taken what
+// building takes, and the second half of its 11 s.
+TEST(OverlappedWork, OfSeveralMethodsIsChargedToEachAsIfItWereAlone) {
+    const OverlappedWork work{.seconds = 6.0, .build_seconds = 3.0, .build_cpu = 3.0, .direct_cpu = {1.0, 8.0}};
+    EXPECT_DOUBLE_EQ(times_alone(work, 0).total(), 3.0);
+    EXPECT_DOUBLE_EQ(times_alone(work, 0).cpu_total(), 4.0);
+    EXPECT_DOUBLE_EQ(times_alone(work, 1).total(), 5.5);
+    EXPECT_DOUBLE_EQ(times_alone(work, 1).cpu_total(), 11.0);
+    EXPECT_DOUBLE_EQ(times_alone(work, 1).of(Stage::Build), 1.5);
 }
 
 TEST_F(Runner, OnlyMethodsWithTheSamePhotonsHitPointsAndPassesCanRunTogether) {
