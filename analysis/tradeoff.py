@@ -4,7 +4,8 @@ method is compared with the one that it differs least from.
 
 The knobs are found from the records: they are the settings in which a method differs from its default, less what follows from
 another one (hit points from samples a pixel, say). Error is the RMSE of the last pass, the root of the mean over seeds of the
-unbiased MSE of the whole picture; time is the mean over seeds of its seconds. Ratios to the default are taken over the seeds that
+unbiased MSE of the whole picture; time is the mean over seeds of its seconds, by wall clock or, with --clock cpu_seconds, of the
+processor, which other programs of a busy machine disturb less. Ratios to the default are taken over the seeds that
 both have, which are the same photons where the setting leaves them the same. Standard errors are those of the jackknife over
 seeds, of ratios on logarithmic axes; intervals are 95% by Student's distribution. Of many intervals one in twenty misses.
 
@@ -36,6 +37,7 @@ DEFAULT = "default"
 FOLLOWS = {"radius_rule": ["radius_initial"], "caustic_radius": ["radius_initial"], "caustic_max_radius": ["max_radius"],
            "hit_points": ["samples_per_pixel", "width", "height", "branch_cutoff"],
            "radius_initial": ["samples_per_pixel", "width", "height", "branch_cutoff"]}
+CLOCKS = {"seconds": "s", "cpu_seconds": "CPU s"}
 RATIOS = ["error", "time"]
 COLUMNS = ["scene", "point", "default", "knob", "value", "default_value", "seeds", "pass", "rmse", "rmse_error", "seconds", "seconds_error",
            *(f"{name}_ratio{part}" for name in RATIOS for part in ["", "_low", "_high"]), "pareto"]
@@ -90,7 +92,7 @@ def last_rows(rows):
     return rows[rows["pass"] == curve.index.max()].set_index("seed").sort_index()
 
 
-def table_of(file, scene, rows, columns):
+def table_of(file, scene, rows, columns, clock):
     """Rows of the table of one scene, the default first, then by knob and value."""
     rows = rows[(rows["component"] == "total") & rows["mse"].notna()]
     names = rows["run"].map(point_of).str.removeprefix(f"{scene}_")
@@ -106,13 +108,13 @@ def table_of(file, scene, rows, columns):
         default = points[compared]
         knobs = knobs_of(own.iloc[0], default.iloc[0], columns)
         seeds = own.index.intersection(default.index)
-        rmse, seconds = jackknife(root_of_mean, own[error].to_numpy()), jackknife(numpy.mean, own["seconds"].to_numpy())
+        rmse, seconds = jackknife(root_of_mean, own[error].to_numpy()), jackknife(numpy.mean, own[clock].to_numpy())
         ratios = {"error": (1.0, 1.0, 1.0), "time": (1.0, 1.0, 1.0)}
         if name != compared:
             if not len(seeds):
                 raise records.RecordError(f"{file}: {scene}_{name} has no seed in common with {scene}_{compared}")
             ratios = {"error": ratio_of(own.loc[seeds, error].to_numpy(), default.loc[seeds, error].to_numpy(), 0.5),
-                      "time": ratio_of(own.loc[seeds, "seconds"].to_numpy(), default.loc[seeds, "seconds"].to_numpy(), 1.0)}
+                      "time": ratio_of(own.loc[seeds, clock].to_numpy(), default.loc[seeds, clock].to_numpy(), 1.0)}
         table.append({
             "scene": scene, "point": name, "default": compared, "knob": ", ".join(knobs), "value": ", ".join(value for value, _ in knobs.values()),
             "default_value": ", ".join(before for _, before in knobs.values()), "seeds": len(seeds), "pass": int(own["pass"].iloc[0]),
@@ -152,7 +154,7 @@ def sentence(row):
     return f"{row['text'] or row['point']}: {', '.join(texts)}"
 
 
-def markdown(tables):
+def markdown(tables, clock):
     """All scenes: each default in numbers, then a line a method; those on the Pareto front are bold."""
     parts = ["# What each setting buys and costs", "", "RMSE and seconds of the last pass; ratios to the default with 95% intervals "
              "over paired seeds. Bold: on the Pareto front of its scene (nothing is both faster and more accurate).", ""]
@@ -161,7 +163,7 @@ def markdown(tables):
         for row in table:
             if is_default(row):
                 count = row["seeds"]
-                parts += ["", f"`{row['point']}`: RMSE {style.two_digits(row['rmse'])} after {style.two_digits(row['seconds'])} s, "
+                parts += ["", f"`{row['point']}`: RMSE {style.two_digits(row['rmse'])} after {style.two_digits(row['seconds'])} {CLOCKS[clock]}, "
                           f"{count} seed{'' if count == 1 else 's'}{'; on the front' if row['pareto'] else ''}.", ""]
             else:
                 parts.append(f"- **{sentence(row)}**" if row["pareto"] else f"- {sentence(row)}")
@@ -169,7 +171,7 @@ def markdown(tables):
     return "\n".join(parts)
 
 
-def draw_scene(table):
+def draw_scene(table, clock):
     """Error against seconds: a line a knob through the default, and the Pareto front under them. None when nothing is resolved."""
     table = [row for row in table if row["rmse"] > 0]
     if not table:
@@ -209,7 +211,7 @@ def draw_scene(table):
         low, high = min(row[column] for row in table), max(row[column] for row in table)
         margin = max((high / low) ** 0.08, 1.1)
         style.logarithmic(axis, low / margin, high * margin)
-    axes.set_xlabel("time of all passes (s)")
+    axes.set_xlabel(f"time of all passes ({CLOCKS[clock]})")
     axes.set_ylabel("RMSE (radiance)")
     axes.set_title(table[0]["scene"], loc="left")
     return figure
@@ -221,10 +223,12 @@ def main(arguments):
                                      epilog="Writes RESULTS_DIR/tradeoff.csv, tradeoff.md and figures/tradeoff-SCENE, .png and "
                                      ".pdf.\n\n" + __doc__.split("\n\n", 1)[1])
     parser.add_argument("results", metavar="RESULTS_DIR", type=Path, help="folder of an experiment's results")
-    results = parser.parse_args(arguments).results
+    parser.add_argument("--clock", choices=CLOCKS, default="seconds", help="what time is taken from (default: seconds)")
+    options = parser.parse_args(arguments)
+    results, clock = options.results, options.clock
     try:
         recorded = records.read_records(results)
-        tables = [table_of(results / "iterations.csv", scene, rows, records.settings_of(recorded))
+        tables = [table_of(results / "iterations.csv", scene, rows, records.settings_of(recorded), clock)
                   for scene, rows in recorded.groupby("scene", sort=False)]
         with open(results / "tradeoff.csv", "w", newline="", encoding="utf-8") as file:
             writer = csv.DictWriter(file, COLUMNS, extrasaction="ignore", lineterminator="\n")
@@ -232,11 +236,11 @@ def main(arguments):
             for row in (row for table in tables for row in table):
                 writer.writerow({column: "" if isinstance(value, float) and math.isnan(value) else value
                                  for column, value in row.items()})
-        (results / "tradeoff.md").write_text(markdown(tables), encoding="utf-8")
+        (results / "tradeoff.md").write_text(markdown(tables, clock), encoding="utf-8")
         print(results / "tradeoff.csv")
         print(results / "tradeoff.md")
         for table in tables:
-            figure = draw_scene(table)
+            figure = draw_scene(table, clock)
             if figure is None:
                 print(f"{table[0]['scene']}: nothing is resolved, so there is nothing to draw")
                 continue

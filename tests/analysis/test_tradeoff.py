@@ -31,12 +31,13 @@ class Tradeoff(unittest.TestCase):
             for row in synthetic.rows(lambda seed, number, _: mse(seed) * 8 / max(1, number), seeds=seeds, passes=[0, 4, 8],
                                       **settings):
                 row.update({"run": f"cornell-box_{name}_seed-{row['seed']}",
-                            "seconds": repr(seconds(int(row["seed"])) * int(row["pass"]) / 8)})
+                            "seconds": repr(seconds(int(row["seed"])) * int(row["pass"]) / 8),
+                            "cpu_seconds": repr(seconds(int(row["seed"])) * int(row["pass"]) / 8 + 1)})
                 made.append(row)
         synthetic.write_csv(self.results, made)
 
-    def tables(self):
-        code, output, errors = synthetic.run(tradeoff, self.results)
+    def tables(self, *options):
+        code, output, errors = synthetic.run(tradeoff, self.results, *options)
         self.assertEqual((code, errors), (0, ""))
         with open(self.results / "tradeoff.csv", newline="", encoding="utf-8") as file:
             table = {row["point"]: row for row in csv.DictReader(file)}
@@ -73,6 +74,13 @@ class Tradeoff(unittest.TestCase):
         self.assertAlmostEqual(float(table["default"]["rmse"]), mean ** 0.5, places=9)
         self.assertEqual((table["default"]["pass"], table["default"]["seeds"]), ("8", "8"))
         self.assertIn("α 0.9 for 0.7: error ×0.71 (0.71 to 0.71), time ×2.00 (2.00 to 2.00)", words)
+
+    def test_time_can_be_that_of_the_processor(self):
+        self.write(self.methods())
+        table, words, _ = self.tables("--clock", "cpu_seconds")
+        mean = numpy.mean([self.noisy(4.0, 0.05)(seed) for seed in SEEDS])
+        self.assertAlmostEqual(float(table["more"]["seconds"]), mean + 1)
+        self.assertIn("CPU s, 8 seeds", words)
 
     def test_what_the_seeds_cannot_tell_is_no_difference(self):
         self.write(self.methods())
