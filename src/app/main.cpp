@@ -1,14 +1,16 @@
 // The program: one subcommand a task. Bad input and bad usage end with one line and exit code 2, an error of the
-// program's own with 1.
+// program's own with 1, an interruption with 3.
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <csignal>
 #include <exception>
 #include <filesystem>
 #include <string>
 
 #include "app/commands.h"
+#include "app/interruption.h"
 #include "core/error.h"
 #include "experiment/version.h"
 
@@ -40,7 +42,11 @@ int run_program(int argc, char** argv) {
         "--version", fmt::format("photonlab {} (commit {}; {})", program.version, program.commit, program.compiler));
     app.require_subcommand(1);
     app.get_formatter()->column_width(34);
-    app.footer("photonlab COMMAND --help says more, with an example.");
+    app.footer(
+        "photonlab COMMAND --help says more, with an example.\n\n"
+        "Exit codes: 0 done; 1 an error of the program's own; 2 input that cannot be used, or files that cannot be\n"
+        "written; 3 ended by SIGINT or SIGTERM after the pass it was at, to be continued (a second signal ends at "
+        "once).");
     add_render_command(app);
     add_run_command(app);
     add_reference_command(app);
@@ -58,10 +64,13 @@ int run_program(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that grows beyond a quota is an error of writing like any other
     try {
         return run_program(argc, argv);
     } catch (const photonlab::InputError& error) {
         return report(error.what(), bad_input);
+    } catch (const photonlab::Interrupted& interruption) {
+        return report(interruption.what(), photonlab::interrupted_exit_code);
     } catch (const std::filesystem::filesystem_error& error) {
         return report(error.what(), bad_input);
     } catch (const std::exception& error) {

@@ -5,16 +5,21 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "app/commands.h"
+#include "app/interruption.h"
 #include "app/options.h"
 #include "core/files.h"
+#include "core/hash.h"
+#include "experiment/checkpoint.h"
 #include "experiment/experiment_file.h"
 #include "experiment/progress.h"
 #include "experiment/recorder.h"
 #include "experiment/reference.h"
 #include "experiment/run_record.h"
 #include "experiment/runner.h"
+#include "experiment/version.h"
 #include "image/exr.h"
 #include "image/png.h"
 #include "scene/loader.h"
@@ -37,7 +42,32 @@ struct RenderOptions {
     std::string csv;
     std::string png;
     std::vector<std::uint64_t> snapshots;
+    std::string checkpoint;
+    double checkpoint_seconds = 30.0;
+    bool resume = false;
 };
+
+/// Where the render's state is kept, with what tells it from others.
+Checkpoint checkpoint_of(const RenderOptions& options, const RunIdentity& identity, const Scene& scene,
+                         const Reference* reference, const std::vector<std::uint64_t>& recorded) {
+    const RunSettings& settings = identity.settings;
+    return {options.checkpoint,
+            hash_text(Json{{"command", "render"},
+                           {"program", program_version().version},
+                           {"settings", settings_json(settings.method)},
+                           {"seed", settings.seed},
+                           {"passes", settings.passes},
+                           {"estimated", settings.estimated},
+                           {"recorded", recorded},
+                           {"csv", !options.csv.empty()},
+                           {"width", identity.width},
+                           {"height", identity.height},
+                           {"samples_per_pixel", identity.samples_per_pixel},
+                           {"scene", scene.hash},
+                           {"reference", reference ? reference->key : ""}}
+                          .dump()),
+            "remove it, or begin anew beside it with another --checkpoint"};
+}
 
 std::filesystem::path snapshot_file(const std::filesystem::path& output, std::uint64_t pass) {
     return output.parent_path() / fmt::format("{}-pass-{}.exr", output.stem().string(), pass);
@@ -66,7 +96,16 @@ void print_summary(const RunState& state, const RunSettings& settings, const Sce
     }
 }
 
+void require_consistent(const RenderOptions& options) {
+    if (options.resume && options.checkpoint.empty())
+        throw InputError("--resume: expected --checkpoint FILE as well, where the state to go on from is");
+    if (!options.resume && !options.checkpoint.empty() && std::filesystem::exists(options.checkpoint))
+        throw InputError(options.checkpoint,
+                         "is there already: --resume goes on from it; to begin anew, remove it or give another file");
+}
+
 void render(const RenderOptions& options) {
+    require_consistent(options);
     const ChosenSettings chosen = options.method.settings();
     require_perfect_square(options.samples_per_pixel);
     std::vector<std::uint64_t> snapshots = options.snapshots;
@@ -87,7 +126,7 @@ void render(const RenderOptions& options) {
 
     // Before hours are spent: everything that is to be written can be.
     require_writable(options.output);
-    for (const std::string& file : {options.csv, options.png})
+    for (const std::string& file : {options.csv, options.png, options.checkpoint})
         if (!file.empty()) require_writable(file);
 
     const std::vector<std::uint64_t> recorded =
@@ -105,40 +144,70 @@ void render(const RenderOptions& options) {
                                scene.camera.height,
                                options.samples_per_pixel,
                                hit_points.points.size()};
-    std::unique_ptr<Recorder> recorder;
-    if (!options.csv.empty())
-        recorder = std::make_unique<Recorder>(identity, reference ? &*reference : nullptr, options.csv);
+    const Reference* judge_by = reference ? &*reference : nullptr;
+    std::optional<Recorder> recorder;
+    if (!options.csv.empty()) recorder.emplace(identity, judge_by, options.csv);
 
+    const Checkpoint checkpoint = checkpoint_of(options, identity, scene, judge_by, recorded);
+    const auto state_of = [&](const StateExchange& method) {
+        return [&](StateArchive& archive) {
+            method(archive);
+            if (recorder) recorder->exchange(archive);
+        };
+    };
+    Continuation continuation;
+    if (options.resume)
+        continuation.restore = [&](std::size_t, const StateExchange& method) {
+            if (!load(checkpoint, state_of(method)))
+                fmt::print(stderr, "photonlab: {} is not there: beginning at pass 1\n", options.checkpoint);
+        };
+    CheckpointClock clock(options.checkpoint_seconds);
+    continuation.goes_on = [&](std::uint64_t pass, const std::vector<StateExchange>& methods) {
+        const bool is_due = clock.is_due_after_pass();
+        if (pass == options.passes || (!is_due && !is_interrupted())) return true;
+        if (!options.checkpoint.empty()) {
+            save(checkpoint, state_of(methods[0]));
+            clock.saved();
+        }
+        return !is_interrupted();
+    };
+
+    listen_for_interruptions();
     Progress progress(options.passes);
-    std::vector<std::filesystem::path> written;
     std::optional<ErrorMetrics> errors;
     RunState shown;
-    run_methods(
+    const RunState last = run_methods(
         scene, hit_points, {settings},
         [&](std::size_t, const RunState& state, const Image& image) {
             const auto is_in = [&](const std::vector<std::uint64_t>& passes) {
                 return std::binary_search(passes.begin(), passes.end(), state.pass);
             };
             if (recorder && is_in(recorded)) recorder->record(state, image);
-            if (is_in(snapshots)) {
-                written.push_back(snapshot_file(options.output, state.pass));
-                write_exr(written.back(), image, image_metadata(identity, state, scene));
-            }
+            if (is_in(snapshots))
+                write_exr(snapshot_file(options.output, state.pass), image, image_metadata(identity, state, scene));
             if (state.pass != options.passes) return;
             shown = state;
             write_exr(options.output, image, image_metadata(identity, state, scene));
             if (!options.png.empty()) write_png(options.png, image.width, image.height, total(image));
             if (reference) errors = judge(image, *reference, total_component, photons_carry_direct(settings.method));
         },
-        [&](std::uint64_t pass) { progress.show(pass, fmt::format("pass {} of {}", pass, options.passes)); });
+        [&](std::uint64_t pass) { progress.show(pass, fmt::format("pass {} of {}", pass, options.passes)); },
+        [](std::size_t, std::uint64_t, const Integrator&) {}, continuation)[0];
     progress.clear();
+    if (last.pass < options.passes)
+        throw Interrupted(fmt::format("interrupted after pass {} of {}; {}", last.pass, options.passes,
+                                      options.checkpoint.empty()
+                                          ? "nothing is saved without --checkpoint FILE"
+                                          : options.checkpoint + " is saved, and --resume goes on from it"));
+    if (!options.checkpoint.empty()) std::filesystem::remove(options.checkpoint);
 
     print_summary(shown, settings, scene, hit_points.points.size(), errors);
     for (const std::string& reason : why_images_are_plain(scene, hit_points)) fmt::print("note        {}\n", reason);
     fmt::print("wrote       {}\n", options.output.string());
     for (const std::string& file : {options.png, options.csv})
         if (!file.empty()) fmt::print("wrote       {}\n", file);
-    for (const std::filesystem::path& file : written) fmt::print("wrote       {}\n", file.string());
+    for (const std::uint64_t pass : snapshots)
+        fmt::print("wrote       {}\n", snapshot_file(options.output, pass).string());
 }
 
 }  // namespace
@@ -161,6 +230,13 @@ void add_render_command(CLI::App& app) {
     command->add_option("--png", options->png, "tone-mapped picture to write");
     command->add_option("--snapshots", options->snapshots, "passes whose image is kept as OUT-pass-N.exr: 0,1,5,10")
         ->delimiter(',');
+    command->add_option("--checkpoint", options->checkpoint,
+                        "file to keep the state in while rendering, so that a kill costs half a minute at most");
+    command
+        ->add_option("--checkpoint-seconds", options->checkpoint_seconds,
+                     "work that a kill may cost, or one pass if that takes longer [30]")
+        ->check(CLI::NonNegativeNumber);
+    command->add_flag("--resume", options->resume, "go on from the checkpoint, if it is there, to the same bits");
     command->footer(
         "Example:\n  photonlab render scenes/cornell-box/scene.xml -o box.exr --integrator ppm --passes 64 "
         "--alpha 0.7 --png box.png");

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "app/commands.h"
+#include "app/interruption.h"
 #include "experiment/experiment_file.h"
 #include "experiment/experiment_runs.h"
 
@@ -19,6 +20,7 @@ struct RunOptions {
     std::string only;
     bool list = false;
     bool smoke = false;
+    ContinuationOptions continuation;
 };
 
 void run(const RunOptions& options) {
@@ -32,23 +34,33 @@ void run(const RunOptions& options) {
         fmt::print("{}", list_runs(experiment, prepared));
         return;
     }
-    const ExperimentOutcome outcome = run_experiment(experiment, prepared, results);
+    listen_for_interruptions();
+    const ExperimentOutcome outcome = run_experiment(experiment, prepared, results, options.continuation);
     fmt::print("{} runs made, {} were finished already\n", outcome.ran, outcome.skipped);
     fmt::print("wrote {}: {} of {} runs\n", outcome.records.string(), outcome.merged, experiment.runs.size());
     fmt::print("wrote {}: run.json, iterations.csv and snapshots of each\n", (results / "runs").string());
+    if (outcome.is_interrupted) throw Interrupted("interrupted, and saved; the same command goes on from there");
 }
 
 }  // namespace
 
 void add_run_command(CLI::App& app) {
     auto options = std::make_shared<RunOptions>();
-    CLI::App* command = app.add_subcommand("run", "Run an experiment; finished runs are skipped");
+    options->continuation.is_interrupted = is_interrupted;
+    CLI::App* command =
+        app.add_subcommand("run", "Run an experiment; finished runs are skipped, interrupted ones continued");
     command->add_option("EXPERIMENT", options->experiment, "experiment file (TOML)")->required();
     command->add_option("-o", options->output, "folder for results [results/EXPERIMENT]");
     command->add_flag("--list", options->list, "print the runs with an estimate of time and memory, and run nothing");
     command->add_option("--only", options->only, "only runs of this name, or that match this shell pattern");
     command->add_flag("--smoke", options->smoke,
                       "everything in small: at most 4 passes, 2000 photons a pass, 2 seeds; into a folder of its own");
+    command
+        ->add_option("--checkpoint-seconds", options->continuation.seconds_between_saves,
+                     "work that a kill may cost, or one pass if that takes longer [30]")
+        ->check(CLI::NonNegativeNumber);
+    command->add_flag("--fresh", options->continuation.fresh,
+                      "begin unfinished runs anew; their checkpoints are set aside as checkpoint.old");
     command->footer("Example:\n  photonlab run experiments/demo.toml --only '*_ppm_alpha-0.7_*'");
     command->callback([options] { run(*options); });
 }

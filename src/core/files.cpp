@@ -1,5 +1,9 @@
 #include "core/files.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -73,6 +77,71 @@ void make_folder(const std::filesystem::path& folder) {
     if (!std::filesystem::is_directory(folder))
         throw InputError(folder.string(),
                          "folder cannot be made: " + (error ? error.message() : "a file has this name"));
+}
+
+namespace {
+
+/// A POSIX file descriptor: streams do not say whether the disk took what they were given.
+class Descriptor {
+public:
+    Descriptor(const std::filesystem::path& file, int flags) : number_(::open(file.c_str(), flags | O_CLOEXEC, 0666)) {}
+    ~Descriptor() {
+        if (number_ >= 0) ::close(number_);
+    }
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+
+    bool is_open() const { return number_ >= 0; }
+    int number() const { return number_; }
+
+private:
+    int number_;
+};
+
+}  // namespace
+
+void AppendedFile::fail(const std::string& what) const {
+    throw InputError(file_.string(), what);
+}
+
+void AppendedFile::append(std::string_view text) {
+    const Descriptor descriptor(file_, O_WRONLY | (size_ == 0 ? O_CREAT | O_TRUNC : 0));
+    if (!descriptor.is_open()) fail(std::string("cannot be written: ") + std::strerror(errno));
+    struct stat status;
+    if (::fstat(descriptor.number(), &status) != 0 || static_cast<std::uint64_t>(status.st_size) != size_)
+        fail("was changed by somebody else while it was being written");
+    for (std::size_t done = 0; done < text.size();) {
+        const ssize_t written =
+            ::pwrite(descriptor.number(), text.data() + done, text.size() - done, static_cast<off_t>(size_ + done));
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) {
+            const std::string reason = written < 0 ? std::strerror(errno) : "nothing more is taken";
+            if (::ftruncate(descriptor.number(), static_cast<off_t>(size_)) != 0)
+                fail("cannot be written: " + reason + "; its last line is incomplete");
+            fail("cannot be written: " + reason);
+        }
+        done += static_cast<std::size_t>(written);
+    }
+    size_ += text.size();
+    hash_.add(text.data(), text.size());
+}
+
+void AppendedFile::exchange(StateArchive& archive) {
+    std::string hash = hash_.text();
+    archive.exchange(size_);
+    archive.exchange(hash);
+    if (size_ == 0) return;
+    if (!archive.reads()) {
+        const Descriptor descriptor(file_, O_WRONLY);
+        if (!descriptor.is_open() || ::fsync(descriptor.number()) != 0)
+            fail(std::string("cannot be written: ") + std::strerror(errno));
+        return;
+    }
+    const std::string text = read_text_file(file_).substr(0, size_);
+    hash_ = RunningHash();
+    hash_.add(text.data(), text.size());
+    if (hash_.text() != hash) fail("is not the file that was being written");
+    std::filesystem::resize_file(file_, size_);
 }
 
 void require_writable(const std::filesystem::path& file) {

@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/state_archive.h"
+
 namespace photonlab {
 
 /// Throws InputError unless `file` is an ordinary file that can be opened. Asked before anything else opens it: a pipe
@@ -29,5 +31,28 @@ void make_folder(const std::filesystem::path& folder);
 /// Throws InputError unless `file` can be written, making its folder where needed: asked before hours are spent on what
 /// is to go there.
 void require_writable(const std::filesystem::path& file);
+
+/// A file that grows by whole pieces: of one that finds no room, nothing stays.
+class AppendedFile {
+public:
+    /// Made, or emptied, by the first append().
+    explicit AppendedFile(std::filesystem::path file) : file_(std::move(file)) {}
+
+    /// Throws InputError when it cannot be written wholly, or when somebody else removed the file or changed its size.
+    void append(std::string_view text);
+
+    bool is_empty() const { return size_ == 0; }
+
+    /// Saves how far the file has grown, or cuts a file that has grown since back to that. Throws InputError when it is
+    /// not the same up to there.
+    void exchange(StateArchive& archive);
+
+private:
+    [[noreturn]] void fail(const std::string& what) const;
+
+    std::filesystem::path file_;
+    std::uint64_t size_ = 0;
+    RunningHash hash_;  // of what was appended
+};
 
 }  // namespace photonlab

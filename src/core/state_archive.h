@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <iosfwd>
 #include <optional>
 #include <string>
@@ -20,8 +21,8 @@ namespace photonlab {
 
 /// A number, or a struct of numbers without gaps.
 template <typename Value>
-concept PlainValue = std::is_standard_layout_v<Value> && std::is_trivially_destructible_v<Value> &&
-                     !std::is_pointer_v<Value>;
+concept PlainValue =
+    std::is_standard_layout_v<Value> && std::is_trivially_destructible_v<Value> && !std::is_pointer_v<Value>;
 
 class StateArchive {
 public:
@@ -91,5 +92,8 @@ private:
     std::uint64_t left_ = 0;
     RunningHash hash_;
 };
+
+/// Writes or reads the state of one thing.
+using StateExchange = std::function<void(StateArchive&)>;
 
 }  // namespace photonlab

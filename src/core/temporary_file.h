@@ -1,11 +1,14 @@
-// A file that gets its name only when it is complete: it is written under a temporary name in the same folder and
-// renamed at the end, so that an interrupted program or a full disk never leaves half a file under the final name,
-// and a reader sees either the old file or the new one.
+// A file that gets its name only when it is complete and on the disk: it is written under a temporary name in the same
+// folder and renamed at the end, so that an interrupted program, a full disk or a power cut never leaves half a file
+// under the final name, and a reader sees either the old file or the new one.
 
 #pragma once
 
+#include <fcntl.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -32,6 +35,12 @@ public:
 
     /// Gives the complete file its final name, in place of a file that had it. Throws InputError.
     void rename() {
+        const int descriptor = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+        const bool is_on_disk = descriptor >= 0 && ::fsync(descriptor) == 0;
+        const int reason = errno;
+        if (descriptor >= 0) ::close(descriptor);
+        if (!is_on_disk)
+            throw InputError(final_name_.string(), std::string("cannot be written: ") + std::strerror(reason));
         std::error_code error;
         std::filesystem::rename(path_, final_name_, error);
         if (error) throw InputError(final_name_.string(), "cannot be written: " + error.message());

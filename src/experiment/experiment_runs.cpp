@@ -9,11 +9,10 @@
 
 #include "core/files.h"
 #include "core/hash.h"
-#include "experiment/ensemble.h"
 #include "experiment/progress.h"
+#include "experiment/recorder.h"
 #include "experiment/reference.h"
 #include "experiment/run_estimate.h"
-#include "experiment/run_record.h"
 #include "experiment/version.h"
 #include "scene/loader.h"
 #include "transport/plain_images.h"
@@ -71,142 +70,6 @@ bool is_finished(const std::filesystem::path& folder, const std::string& key) {
 
 ReferenceSubject subject_of(const Scene& scene, int samples_per_pixel, int max_depth) {
     return {scene.hash, scene.camera.width, scene.camera.height, samples_per_pixel, max_depth};
-}
-
-bool contains(const std::vector<std::uint64_t>& sorted, std::uint64_t pass) {
-    return std::binary_search(sorted.begin(), sorted.end(), pass);
-}
-
-/// The hit point of a pixel that carries most of it: the only one, but for several samples a pixel, mirrors and glass.
-std::optional<std::size_t> heaviest_hit_point(const HitPoints& hit_points, const Probe& probe) {
-    const auto pixel = static_cast<std::uint32_t>(probe.y * hit_points.width + probe.x);
-    std::optional<std::size_t> heaviest;
-    for (std::size_t i = 0; i < hit_points.points.size(); ++i) {
-        if (hit_points.points[i].pixel != pixel) continue;
-        if (!heaviest || mean_channel(ColorD(hit_points.points[i].weight)) >
-                             mean_channel(ColorD(hit_points.points[*heaviest].weight)))
-            heaviest = i;
-    }
-    return heaviest;
-}
-
-const std::string probes_header =
-    "schema,experiment,run,scene,seed,probe,x,y,pass,radius,photons,density,radiance_r,radiance_g,radiance_b";
-
-/// What the probes of a scene show of a method, a row each.
-std::string probe_rows(const RunIdentity& identity, const std::vector<Probe>& probes, const HitPoints& hit_points,
-                       std::uint64_t pass, const Integrator& integrator) {
-    std::string rows;
-    for (const Probe& probe : probes) {
-        const auto hit_point = heaviest_hit_point(hit_points, probe);
-        const auto state = hit_point ? integrator.gather_state(*hit_point) : std::nullopt;
-        if (!state) continue;
-        rows += fmt::format("1,{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_quoted(identity.experiment),
-                            csv_quoted(identity.run), csv_quoted(identity.scene), identity.settings.seed, probe.name,
-                            probe.x, probe.y, pass, state->radius, state->photons,
-                            state->density ? fmt::format("{}", *state->density) : "", state->radiance.x,
-                            state->radiance.y, state->radiance.z);
-    }
-    return rows;
-}
-
-/// A run while it is running.
-struct OpenRun {
-    const PreparedRun* prepared;
-    RunRecord record;
-    Recorder recorder;
-    std::vector<PassImage> recorded_images;  // for the ensemble
-    std::string probes;                      // rows
-};
-
-Ensemble ensemble_of(const Experiment& experiment, const PreparedRun& prepared, const std::filesystem::path& results) {
-    const SceneEntry& entry = experiment.scenes[prepared.run->scene];
-    Json regions = Json::object();
-    for (const Region& region : entry.regions)
-        regions[region.name] = {region.left, region.top, region.right, region.bottom};
-    return Ensemble(results / "ensembles" / prepared.run->point, prepared.point_key,
-                    {{"experiment", experiment.name},
-                     {"title", experiment.title},
-                     {"point", prepared.run->point},
-                     {"scene", entry.name},
-                     {"method", prepared.run->method},
-                     {"photons_carry_direct", photons_carry_direct(prepared.settings.method)},
-                     {"reference", entry.reference ? Json{{"path", entry.reference->string()}} : Json()},
-                     {"working_directory", std::filesystem::current_path().string()},
-                     {"regions", regions},
-                     {"passes", prepared.run->plan.recorded}});
-}
-
-/// Runs methods side by side, each into its folder; run.json goes first and comes last, so that no half-made run looks
-/// finished.
-void execute(const Experiment& experiment, const std::vector<const PreparedRun*>& together, const Scene& scene,
-             const HitPoints& hit_points, const Reference* reference, const std::filesystem::path& results,
-             const PassListener& on_pass, std::string& summary) {
-    const SceneEntry& entry = experiment.scenes[together.at(0)->run->scene];
-    const PassPlan& plan = together.at(0)->run->plan;
-    const auto began = std::chrono::steady_clock::now();
-    std::vector<OpenRun> open;
-    std::vector<RunSettings> settings;
-    for (const PreparedRun* prepared : together) {
-        std::filesystem::remove(prepared->folder / "run.json");
-        std::filesystem::remove_all(prepared->folder / "snapshots");
-        make_folder(prepared->folder / "snapshots");
-        open.push_back(
-            {prepared,
-             RunRecord{experiment.title,
-                       prepared->run->method,
-                       prepared->key,
-                       entry.file,
-                       std::chrono::system_clock::now(),
-                       0.0,
-                       together.size(),
-                       plan.recorded,
-                       {}},
-             Recorder({experiment.name, prepared->run->name, entry.name, prepared->settings, scene.camera.width,
-                       scene.camera.height, experiment.samples_per_pixel, hit_points.points.size()},
-                      reference, prepared->folder / "iterations.csv"),
-             {},
-             {}});
-        settings.push_back(prepared->settings);
-    }
-    reset_peak_resident();
-
-    const std::vector<RunState> last = run_methods(
-        scene, hit_points, settings,
-        [&](std::size_t method, const RunState& state, const Image& image) {
-            OpenRun& run = open[method];
-            if (contains(plan.recorded, state.pass)) {
-                run.recorder.record(state, image);
-                if (experiment.decomposition) run.recorded_images.push_back({state.pass, image});
-            }
-            if (!contains(plan.snapshots, state.pass)) return;
-            const std::string file = "snapshots/" + snapshot_name(state.pass);
-            write_exr(run.prepared->folder / file, image, image_metadata(run.recorder.identity(), state, scene));
-            run.record.snapshots.push_back({state.pass, file});
-        },
-        on_pass,
-        [&](std::size_t method, std::uint64_t pass, const Integrator& integrator) {
-            open[method].probes +=
-                probe_rows(open[method].recorder.identity(), entry.probes, hit_points, pass, integrator);
-        });
-
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-    for (std::size_t i = 0; i < open.size(); ++i) {
-        OpenRun& run = open[i];
-        const std::filesystem::path& folder = run.prepared->folder;
-        run.record.seconds = seconds;
-        if (!run.probes.empty()) write_text_file(folder / "probes.csv", probes_header + "\n" + run.probes);
-        if (experiment.decomposition)
-            ensemble_of(experiment, *run.prepared, results).add(run.prepared->run->seed, run.recorded_images);
-        write_text_file(folder / "run.json",
-                        run_json(run.record, run.recorder, last[i], scene, hit_points, reference).dump(2) + "\n");
-
-        summary += fmt::format("{}finished {} in {}", i > 0 ? "\n" : "", run.prepared->run->name,
-                               describe_duration(last[i].times.total()));
-        if (run.recorder.last_total_errors())
-            summary += fmt::format(", rmse {:.4g}", run.recorder.last_total_errors()->rmse);
-        if (run.recorder.nonfinite_pixels() > 0) summary += ", with non-finite pixels (run.json says where)";
-    }
 }
 
 /// The rows of a run's file, without its header, which must be `header`.
@@ -310,10 +173,13 @@ PreparedExperiment prepare_experiment(const Experiment& experiment, const std::f
 }
 
 ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExperiment& prepared,
-                                 const std::filesystem::path& results) {
+                                 const std::filesystem::path& results, const ContinuationOptions& options) {
     ExperimentOutcome outcome;
     outcome.records = results / "iterations.csv";
     require_writable(outcome.records);
+    if (!options.fresh)
+        for (const PreparedRun& ready : prepared.runs)
+            if (!ready.finished) is_usable(checkpoint_of(experiment, ready));
 
     const std::vector<std::vector<const PreparedRun*>> groups = runs_together(prepared.runs);
     for (const PreparedRun& ready : prepared.runs) outcome.skipped += ready.finished;
@@ -347,13 +213,14 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
         const std::string others = groups[i].size() > 1 ? fmt::format(" and {} more", groups[i].size() - 1) : "";
         const std::string counted = fmt::format("{} of {}: {}{}", i + 1, groups.size(), first.run->name, others);
         progress.show(passes_before, counted);
-        std::string summary;
-        execute(
-            experiment, groups[i], scene, *hit_points, reference ? &*reference : nullptr, results,
-            [&](std::uint64_t pass) { progress.show(passes_before + pass, counted); }, summary);
+        const GroupOutcome made =
+            run_group({experiment, scene, *hit_points, reference ? &*reference : nullptr, results, groups[i]}, options,
+                      [&](std::uint64_t pass) { progress.show(passes_before + pass, counted); });
+        outcome.is_interrupted = !made.is_finished;
+        if (outcome.is_interrupted) break;
         passes_before += first.settings.passes;
         outcome.ran += groups[i].size();
-        progress.finished(summary);
+        progress.finished(made.summary);
     }
     progress.clear();
     if (experiment.decomposition)

@@ -5,6 +5,7 @@
 //     RESULTS/runs/RUN/iterations.csv           the run's rows, appended as its passes finish
 //     RESULTS/runs/RUN/snapshots/pass-000064.exr
 //     RESULTS/runs/RUN/run.json                 written last: a folder without it is not finished
+//     RESULTS/runs/RUN/checkpoint               of a run that is not finished: what it goes on from
 //     RESULTS/probes.csv, RESULTS/runs/RUN/probes.csv    of scenes with probes: what was gathered there, pass by pass
 //     RESULTS/ensembles/POINT/                  with `decomposition`: ensemble.h
 //
@@ -19,20 +20,10 @@
 #include <vector>
 
 #include "experiment/experiment_file.h"
-#include "experiment/runner.h"
+#include "experiment/run_group.h"
 #include "scene/scene.h"
 
 namespace photonlab {
-
-/// A run that is ready to start: its scene is there, its reference fits.
-struct PreparedRun {
-    const ExperimentRun* run = nullptr;
-    RunSettings settings;
-    std::string key;
-    std::string point_key;  ///< the same without the seed
-    std::filesystem::path folder;
-    bool finished = false;  ///< with this key
-};
 
 struct PreparedExperiment {
     std::vector<std::optional<Scene>> scenes;  ///< by index of Experiment::scenes; only those that a selected run needs
@@ -49,11 +40,13 @@ struct ExperimentOutcome {
     std::size_t skipped = 0;        ///< were finished already
     std::filesystem::path records;  ///< the merged iterations.csv
     std::size_t merged = 0;         ///< runs in it
+    bool is_interrupted = false;    ///< what was running is saved
 };
 
-/// Runs what is not finished and merges the records.
+/// Runs what is not finished, from its checkpoints, and merges the records. Throws InputError before anything is run
+/// when a checkpoint is damaged or of other settings.
 ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExperiment& prepared,
-                                 const std::filesystem::path& results);
+                                 const std::filesystem::path& results, const ContinuationOptions& options = {});
 
 /// One line a run: name, estimated time and memory, or that it is finished; then the sums.
 std::string list_runs(const Experiment& experiment, const PreparedExperiment& prepared);

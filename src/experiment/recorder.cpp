@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <cerrno>
-#include <cstring>
+#include <algorithm>
+#include <fstream>
 
-#include "core/error.h"
-#include "core/files.h"
 #include "integrators/registry.h"
 
 namespace photonlab {
@@ -184,14 +182,12 @@ void reset_peak_resident() {
 }
 
 Recorder::Recorder(RunIdentity identity, const Reference* reference, const std::filesystem::path& file)
-    : identity_(std::move(identity)), reference_(reference), file_(file) {
-    write_text_file(file_, csv_header() + "\n");
-    stream_.open(file_, std::ios::binary | std::ios::app);
-}
+    : identity_(std::move(identity)), reference_(reference), file_(file) {}
 
 void Recorder::record(const RunState& state, const Image& image) {
-    const double peak = peak_resident_mib();
+    peak_ = std::max(peak_, peak_resident_mib());
     const bool carried = photons_carry_direct(identity_.settings.method);
+    std::string rows = file_.is_empty() ? csv_header() + "\n" : "";
     for (const std::string& component : components) {
         std::optional<ErrorMetrics> errors;
         if (reference_) errors = judge(image, *reference_, component, carried);
@@ -200,10 +196,21 @@ void Recorder::record(const RunState& state, const Image& image) {
             last_total_ = errors;
             nonfinite_count_ += nonfinite;
         }
-        stream_ << csv_row({identity_, state, component, std::move(errors), nonfinite, peak}) << '\n';
+        rows += csv_row({identity_, state, component, std::move(errors), nonfinite, peak_}) + "\n";
     }
-    stream_.flush();
-    if (!stream_) throw InputError(file_.string(), std::string("cannot be written: ") + std::strerror(errno));
+    file_.append(rows);
+}
+
+void Recorder::exchange(StateArchive& archive) {
+    file_.exchange(archive);
+    archive.exchange(peak_);
+    archive.exchange(nonfinite_count_);
+    archive.exchange_each(first_nonfinite_, [](StateArchive& each, NonfinitePixel& pixel) {
+        each.exchange(pixel.pass);
+        each.exchange(pixel.component);
+        each.exchange(pixel.x);
+        each.exchange(pixel.y);
+    });
 }
 
 std::uint64_t Recorder::count_nonfinite(const RunState& state, const Image& image, const std::string& component) {

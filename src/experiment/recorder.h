@@ -7,12 +7,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/files.h"
 #include "experiment/reference.h"
 #include "experiment/runner.h"
 #include "image/image.h"
@@ -72,11 +72,14 @@ void reset_peak_resident();
 /// Writes a run's rows as its passes finish.
 class Recorder {
 public:
-    /// `reference` may be nullptr; both must outlive the recorder. Replaces the file.
+    /// `reference` may be nullptr; it must outlive the recorder. The file is replaced by the first record().
     Recorder(RunIdentity identity, const Reference* reference, const std::filesystem::path& file);
 
     /// Appends the rows of a pass, one a component.
     void record(const RunState& state, const Image& image);
+
+    /// Saves how far the file has grown and what was counted, or goes on from there.
+    void exchange(StateArchive& archive);
 
     const RunIdentity& identity() const { return identity_; }
     std::uint64_t nonfinite_pixels() const { return nonfinite_count_; }  ///< summed over the rows of component total
@@ -88,8 +91,8 @@ private:
 
     RunIdentity identity_;
     const Reference* reference_;
-    std::filesystem::path file_;
-    std::ofstream stream_;
+    AppendedFile file_;
+    double peak_ = 0.0;
     std::uint64_t nonfinite_count_ = 0;
     std::vector<NonfinitePixel> first_nonfinite_;
     std::optional<ErrorMetrics> last_total_;

@@ -88,7 +88,21 @@ struct RunningMethod {
     std::unique_ptr<Integrator> integrator;
     PhotonNeed needs;
     RunState state;
-    StageTimes passes_alone;  // without estimates
+    StageTimes passes_alone;      // without estimates
+    std::uint64_t next_pass = 0;  // 0: its first image is still to be shown
+
+    /// See Continuation. The initial radius is that of the integrator as it was made.
+    void exchange(StateArchive& archive) {
+        archive.exchange(state.pass);
+        archive.exchange(state.paths_emitted);
+        archive.exchange(state.photons_stored);
+        archive.exchange(state.paths_cut);
+        archive.exchange(state.power_cut);
+        archive.exchange(state.nonfinite_photons);
+        archive.exchange(passes_alone);
+        integrator->exchange(archive);
+        if (archive.reads()) next_pass = state.pass + 1;
+    }
 };
 
 /// Times one step of the supply.
@@ -101,10 +115,10 @@ StageTimes timed(Stage stage, const Step& step) {
     return clock.times();
 }
 
-/// Adds what a shared step took to each method that needs it, as if it were alone.
-void charge(std::vector<RunningMethod>& methods, PhotonNeed need, const StageTimes& times) {
+/// Adds what a shared step of a pass took to each method that takes the pass and needs the step, as if it were alone.
+void charge(std::vector<RunningMethod>& methods, std::uint64_t pass, PhotonNeed need, const StageTimes& times) {
     for (RunningMethod& method : methods)
-        if (method.needs == need) method.passes_alone += times;
+        if (method.needs == need && method.next_pass == pass) method.passes_alone += times;
 }
 
 /// Indexes the photons of the pass and samples the direct light of the methods that gather them, which needs no
@@ -117,7 +131,7 @@ void index_and_light(PhotonSupply& photons, std::vector<RunningMethod>& methods,
     std::vector<std::size_t> gathering;
     std::vector<DirectBlock> blocks;
     for (std::size_t i = 0; i < methods.size(); ++i) {
-        if (methods[i].needs != PhotonNeed::PassMap) continue;
+        if (methods[i].needs != PhotonNeed::PassMap || methods[i].next_pass != pass) continue;
         const std::size_t count = methods[i].integrator->begin_direct(pass);
         for (std::size_t block = 0; block < count; ++block) blocks.push_back({gathering.size(), block});
         gathering.push_back(i);
@@ -163,7 +177,8 @@ bool can_run_together(const RunSettings& a, const RunSettings& b) {
 
 std::vector<RunState> run_methods(const Scene& scene, const HitPoints& hit_points,
                                   const std::vector<RunSettings>& settings, const EstimateListener& on_estimate,
-                                  const PassListener& on_pass, const GatherListener& on_gather) {
+                                  const PassListener& on_pass, const GatherListener& on_gather,
+                                  const Continuation& continuation) {
     const RunSettings& common = settings.at(0);
     std::vector<RunningMethod> methods;
     for (const RunSettings& one : settings) {
@@ -175,21 +190,28 @@ std::vector<RunState> run_methods(const Scene& scene, const HitPoints& hit_point
         method.state.initial_radius = method.state.report.radius_mean;
         methods.push_back(std::move(method));
     }
-    const auto is_needed = [&](PhotonNeed need) {
-        return std::any_of(methods.begin(), methods.end(), [&](const RunningMethod& m) { return m.needs == need; });
-    };
-    const bool needs_pass_map = is_needed(PhotonNeed::PassMap);
-    const bool needs_all_passes = is_needed(PhotonNeed::AllPassesMaps);
+    std::vector<StateExchange> states;
+    for (RunningMethod& method : methods)
+        states.push_back([&method](StateArchive& archive) { method.exchange(archive); });
+    if (continuation.restore)
+        for (std::size_t i = 0; i < methods.size(); ++i) continuation.restore(i, states[i]);
+
+    const auto is_any = [&](const auto& holds) { return std::any_of(methods.begin(), methods.end(), holds); };
+    const bool needs_all_passes = is_any([](const auto& method) { return method.needs == PhotonNeed::AllPassesMaps; });
     const PhotonSettings photon_settings = photons_of(common);
     PhotonSupply photons;
 
-    auto next_estimate = common.estimated.begin();
-    const auto estimate_if_asked = [&](std::uint64_t pass) {
-        const bool is_asked = next_estimate != common.estimated.end() && *next_estimate == pass;
+    const auto end_pass = [&](std::uint64_t pass) {
+        const bool is_asked = std::binary_search(common.estimated.begin(), common.estimated.end(), pass);
+        const bool needs_maps = is_asked && is_any([&](const RunningMethod& method) {
+                                    return method.needs == PhotonNeed::AllPassesMaps && method.next_pass == pass;
+                                });
         StageTimes shared;
-        if (is_asked && needs_all_passes) shared = timed(Stage::Build, [&] { photons.index_all_passes(); });
+        if (needs_maps) shared = timed(Stage::Build, [&] { photons.index_all_passes(); });
         for (std::size_t i = 0; i < methods.size(); ++i) {
             RunningMethod& method = methods[i];
+            if (method.next_pass != pass) continue;
+            ++method.next_pass;
             method.state.report = method.integrator->report();
             method.state.times = method.passes_alone;
             if (!is_asked) continue;
@@ -204,18 +226,20 @@ std::vector<RunState> run_methods(const Scene& scene, const HitPoints& hit_point
             method.state.report = method.integrator->report();
             on_estimate(i, method.state, image);
         }
-        if (!is_asked) return;
-        ++next_estimate;
         photons.drop_maps_of_all_passes();
     };
 
-    estimate_if_asked(0);
+    end_pass(0);
     for (std::uint64_t pass = 1; pass <= common.passes; ++pass) {
+        const bool needs_pass_map = is_any([&](const RunningMethod& method) {
+            return method.needs == PhotonNeed::PassMap && method.next_pass == pass;
+        });
         if (needs_pass_map || needs_all_passes) {
             PhotonPass traced;
             const StageTimes tracing =
                 timed(Stage::Trace, [&] { traced = trace_photons(scene, photon_settings, pass, common.threads); });
             for (RunningMethod& method : methods) {
+                if (method.next_pass != pass) continue;
                 method.passes_alone += tracing;
                 method.state.paths_emitted += traced.paths_emitted;
                 method.state.photons_stored += traced.photons.size();
@@ -226,10 +250,11 @@ std::vector<RunState> run_methods(const Scene& scene, const HitPoints& hit_point
             photons.begin_pass(std::move(traced));
         }
         if (needs_all_passes)
-            charge(methods, PhotonNeed::AllPassesMaps, timed(Stage::Build, [&] { photons.add_pass(); }));
+            charge(methods, pass, PhotonNeed::AllPassesMaps, timed(Stage::Build, [&] { photons.add_pass(); }));
         if (needs_pass_map) index_and_light(photons, methods, pass, common.threads);
         for (std::size_t i = 0; i < methods.size(); ++i) {
             RunningMethod& method = methods[i];
+            if (method.next_pass != pass) continue;
             StageClock clock;
             method.integrator->run_pass(pass, photons, [&](Stage stage) { clock.enter(stage); });
             clock.stop();
@@ -238,8 +263,9 @@ std::vector<RunState> run_methods(const Scene& scene, const HitPoints& hit_point
             if (method.needs == PhotonNeed::PassMap) on_gather(i, pass, *method.integrator);
         }
         photons.end_pass();
-        estimate_if_asked(pass);
+        end_pass(pass);
         on_pass(pass);
+        if (continuation.goes_on && !continuation.goes_on(pass, states)) break;
     }
     std::vector<RunState> last;
     for (RunningMethod& method : methods) last.push_back(std::move(method.state));

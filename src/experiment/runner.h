@@ -85,16 +85,27 @@ using PassListener = std::function<void(std::uint64_t pass)>;
 /// Told whenever a method has gathered anew: ppm after every pass, photonmapper at every estimate.
 using GatherListener = std::function<void(std::size_t method, std::uint64_t pass, const Integrator&)>;
 
+/// How methods are stopped between two passes and continued later. Either may be empty.
+struct Continuation {
+    /// Asked for each method before the first pass: reads the state that was saved of it, if there is one.
+    std::function<void(std::size_t method, const StateExchange& state)> restore;
+
+    /// Asked after every pass, with the state of each method by index, to be saved or not; false ends the run there.
+    std::function<bool(std::uint64_t pass, const std::vector<StateExchange>& states)> goes_on;
+};
+
 /// True when both trace the same photons in the same passes, gather at the same hit points, and are looked at after the
 /// same passes.
 bool can_run_together(const RunSettings& a, const RunSettings& b);
 
 /// Runs one method, or several that can_run_together(). Calls `on_estimate` for each pass of `estimated`, method
 /// by method, and `on_pass` after every pass; returns the last states. Each method's images are, to the bit, those
-/// that it gives alone.
+/// that it gives alone and without interruption: one that is restored waits for the others to reach its pass, and
+/// photons of passes that photonmapper has behind it are traced again, for nobody's account.
 std::vector<RunState> run_methods(
     const Scene& scene, const HitPoints& hit_points, const std::vector<RunSettings>& settings,
     const EstimateListener& on_estimate, const PassListener& on_pass = [](std::uint64_t) {},
-    const GatherListener& on_gather = [](std::size_t, std::uint64_t, const Integrator&) {});
+    const GatherListener& on_gather = [](std::size_t, std::uint64_t, const Integrator&) {},
+    const Continuation& continuation = {});
 
 }  // namespace photonlab

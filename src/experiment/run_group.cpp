@@ -1,0 +1,224 @@
+#include "experiment/run_group.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+
+#include "core/files.h"
+#include "experiment/progress.h"
+#include "experiment/recorder.h"
+#include "experiment/run_record.h"
+#include "image/exr.h"
+
+namespace photonlab {
+
+const std::string probes_header =
+    "schema,experiment,run,scene,seed,probe,x,y,pass,radius,photons,density,radiance_r,radiance_g,radiance_b";
+
+namespace {
+
+bool contains(const std::vector<std::uint64_t>& sorted, std::uint64_t pass) {
+    return std::binary_search(sorted.begin(), sorted.end(), pass);
+}
+
+/// The hit point of a pixel that carries most of it: the only one, but for several samples a pixel, mirrors and glass.
+std::optional<std::size_t> heaviest_hit_point(const HitPoints& hit_points, const Probe& probe) {
+    const auto pixel = static_cast<std::uint32_t>(probe.y * hit_points.width + probe.x);
+    std::optional<std::size_t> heaviest;
+    for (std::size_t i = 0; i < hit_points.points.size(); ++i) {
+        if (hit_points.points[i].pixel != pixel) continue;
+        if (!heaviest || mean_channel(ColorD(hit_points.points[i].weight)) >
+                             mean_channel(ColorD(hit_points.points[*heaviest].weight)))
+            heaviest = i;
+    }
+    return heaviest;
+}
+
+/// What the probes of a scene show of a method, a row each.
+std::string probe_rows(const RunIdentity& identity, const std::vector<Probe>& probes, const HitPoints& hit_points,
+                       std::uint64_t pass, const Integrator& integrator) {
+    std::string rows;
+    for (const Probe& probe : probes) {
+        const auto hit_point = heaviest_hit_point(hit_points, probe);
+        const auto state = hit_point ? integrator.gather_state(*hit_point) : std::nullopt;
+        if (!state) continue;
+        rows += fmt::format("1,{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_quoted(identity.experiment),
+                            csv_quoted(identity.run), csv_quoted(identity.scene), identity.settings.seed, probe.name,
+                            probe.x, probe.y, pass, state->radius, state->photons,
+                            state->density ? fmt::format("{}", *state->density) : "", state->radiance.x,
+                            state->radiance.y, state->radiance.z);
+    }
+    return rows;
+}
+
+/// A run while it is running.
+struct OpenRun {
+    const PreparedRun* prepared;
+    Checkpoint checkpoint;
+    RunRecord record;
+    Recorder recorder;
+    std::vector<PassImage> recorded_images;  // for the ensemble
+    std::string probes;                      // rows
+};
+
+void exchange(StateArchive& archive, PassImage& image) {
+    archive.exchange(image.pass);
+    archive.exchange(image.image.width);
+    archive.exchange(image.image.height);
+    archive.exchange_each(image.image.layers, [](StateArchive& each, Layer& layer) {
+        each.exchange(layer.name);
+        each.exchange(layer.pixels);
+    });
+}
+
+/// What a run holds beside the state of its method.
+void exchange(StateArchive& archive, OpenRun& run) {
+    archive.exchange(run.record.started);
+    archive.exchange(run.record.seconds);
+    run.recorder.exchange(archive);
+    archive.exchange_each(run.recorded_images, [](StateArchive& each, PassImage& image) { exchange(each, image); });
+    archive.exchange(run.probes);
+}
+
+/// Everything a run has in its folder goes, but for its checkpoint, which is set aside.
+void begin_anew(const OpenRun& run) {
+    const std::filesystem::path& folder = run.prepared->folder;
+    for (const char* file : {"run.json", "probes.csv", "snapshots"}) std::filesystem::remove_all(folder / file);
+    if (std::filesystem::exists(run.checkpoint.file))
+        std::filesystem::rename(run.checkpoint.file, run.checkpoint.file.string() + ".old");
+}
+
+OpenRun open_run(const RunGroup& group, const PreparedRun& prepared) {
+    const SceneEntry& entry = group.experiment.scenes[prepared.run->scene];
+    std::vector<Snapshot> snapshots;
+    for (const std::uint64_t pass : prepared.run->plan.snapshots)
+        snapshots.push_back({pass, "snapshots/" + snapshot_name(pass)});
+    return {
+        &prepared,
+        checkpoint_of(group.experiment, prepared),
+        RunRecord{group.experiment.title, prepared.run->method, prepared.key, entry.file,
+                  std::chrono::system_clock::now(), 0.0, group.runs.size(), prepared.run->plan.recorded,
+                  std::move(snapshots)},
+        Recorder({group.experiment.name, prepared.run->name, entry.name, prepared.settings, group.scene.camera.width,
+                  group.scene.camera.height, group.experiment.samples_per_pixel, group.hit_points.points.size()},
+                 group.reference, prepared.folder / "iterations.csv"),
+        {},
+        {}};
+}
+
+/// Writes what is written once all passes are done; returns a line on it.
+std::string finish(const RunGroup& group, OpenRun& run, const RunState& last) {
+    const std::filesystem::path& folder = run.prepared->folder;
+    if (!run.probes.empty()) write_text_file(folder / "probes.csv", probes_header + "\n" + run.probes);
+    if (group.experiment.decomposition)
+        ensemble_of(group.experiment, *run.prepared, group.results).add(run.prepared->run->seed, run.recorded_images);
+    write_text_file(
+        folder / "run.json",
+        run_json(run.record, run.recorder, last, group.scene, group.hit_points, group.reference).dump(2) + "\n");
+    std::filesystem::remove(run.checkpoint.file);
+
+    std::string line = fmt::format("finished {} in {}", run.prepared->run->name, describe_duration(last.times.total()));
+    if (run.recorder.last_total_errors()) line += fmt::format(", rmse {:.4g}", run.recorder.last_total_errors()->rmse);
+    if (run.recorder.nonfinite_pixels() > 0) line += ", with non-finite pixels (run.json says where)";
+    return line;
+}
+
+}  // namespace
+
+Checkpoint checkpoint_of(const Experiment& experiment, const PreparedRun& prepared) {
+    return {prepared.folder / "checkpoint",
+            prepared.key + (experiment.decomposition ? ", with images for sums over seeds" : ""),
+            "remove it, or begin anew beside it with --fresh"};
+}
+
+Ensemble ensemble_of(const Experiment& experiment, const PreparedRun& prepared, const std::filesystem::path& results) {
+    const SceneEntry& entry = experiment.scenes[prepared.run->scene];
+    Json regions = Json::object();
+    for (const Region& region : entry.regions)
+        regions[region.name] = {region.left, region.top, region.right, region.bottom};
+    return Ensemble(results / "ensembles" / prepared.run->point, prepared.point_key,
+                    {{"experiment", experiment.name},
+                     {"title", experiment.title},
+                     {"point", prepared.run->point},
+                     {"scene", entry.name},
+                     {"method", prepared.run->method},
+                     {"photons_carry_direct", photons_carry_direct(prepared.settings.method)},
+                     {"reference", entry.reference ? Json{{"path", entry.reference->string()}} : Json()},
+                     {"working_directory", std::filesystem::current_path().string()},
+                     {"regions", regions},
+                     {"passes", prepared.run->plan.recorded}});
+}
+
+GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options, const PassListener& on_pass) {
+    const std::vector<Probe>& probes = group.experiment.scenes[group.runs.at(0)->run->scene].probes;
+    std::vector<OpenRun> open;
+    std::vector<RunSettings> settings;
+    for (const PreparedRun* prepared : group.runs) {
+        open.push_back(open_run(group, *prepared));
+        settings.push_back(prepared->settings);
+    }
+    reset_peak_resident();
+
+    using Clock = std::chrono::steady_clock;
+    auto counted = Clock::now();  // up to here, time is in the records
+    const auto count_seconds = [&] {
+        const auto now = Clock::now();
+        for (OpenRun& run : open) run.record.seconds += std::chrono::duration<double>(now - counted).count();
+        counted = now;
+    };
+    const auto state_of = [&](OpenRun& run, const StateExchange& method) {
+        return [&run, &method](StateArchive& archive) {
+            method(archive);
+            exchange(archive, run);
+        };
+    };
+    const auto restore = [&](std::size_t i, const StateExchange& method) {
+        if (options.fresh || !load(open[i].checkpoint, state_of(open[i], method))) begin_anew(open[i]);
+        make_folder(open[i].prepared->folder / "snapshots");
+    };
+    CheckpointClock clock(options.seconds_between_saves);
+    bool is_interrupted = false;
+    const auto goes_on = [&](std::uint64_t pass, const std::vector<StateExchange>& methods) {
+        const bool is_due = clock.is_due_after_pass();
+        if (pass == settings[0].passes) return true;
+        is_interrupted = options.is_interrupted();
+        if (is_due || is_interrupted) {
+            count_seconds();
+            for (std::size_t i = 0; i < open.size(); ++i) save(open[i].checkpoint, state_of(open[i], methods[i]));
+            clock.saved();
+        }
+        return !is_interrupted;
+    };
+
+    const std::vector<RunState> last = run_methods(
+        group.scene, group.hit_points, settings,
+        [&](std::size_t method, const RunState& state, const Image& image) {
+            OpenRun& run = open[method];
+            const PassPlan& plan = run.prepared->run->plan;
+            if (contains(plan.recorded, state.pass)) {
+                run.recorder.record(state, image);
+                if (group.experiment.decomposition) run.recorded_images.push_back({state.pass, image});
+            }
+            if (contains(plan.snapshots, state.pass))
+                write_exr(run.prepared->folder / "snapshots" / snapshot_name(state.pass), image,
+                          image_metadata(run.recorder.identity(), state, group.scene));
+        },
+        on_pass,
+        [&](std::size_t method, std::uint64_t pass, const Integrator& integrator) {
+            open[method].probes +=
+                probe_rows(open[method].recorder.identity(), probes, group.hit_points, pass, integrator);
+        },
+        {restore, goes_on});
+
+    GroupOutcome outcome;
+    if (is_interrupted) return outcome;
+    count_seconds();
+    for (std::size_t i = 0; i < open.size(); ++i)
+        outcome.summary += fmt::format("{}{}", i > 0 ? "\n" : "", finish(group, open[i], last[i]));
+    outcome.is_finished = true;
+    return outcome;
+}
+
+}  // namespace photonlab

@@ -1,0 +1,146 @@
+// Experiments that are interrupted and continued leave what uninterrupted ones leave, to the bit.
+
+#include "experiment/run_group.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "experiment/experiment_runs.h"
+#include "experiment/reference_store.h"
+#include "test_folder.h"
+#include "tests/support/results.h"
+
+namespace photonlab {
+namespace {
+
+class InterruptedExperiment : public ::testing::Test {
+protected:
+    InterruptedExperiment() {
+        const Scene scene = build_scene(load_scene_file(folder_.write("walls/scene.xml", two_walls_scene)));
+        ReferenceSettings settings;
+        settings.scene_file = folder_ / "walls/scene.xml";
+        settings.samples = 16;
+        settings.max_depth = scene.max_depth;
+        add_reference_samples(scene, settings, folder_ / "reference");
+        folder_.write("tiny.toml", R"(
+title = "Does it go on?"
+passes = 6
+seeds = 2
+threads = 1
+record = "powers-of-two"
+snapshots = [1, 5]
+decomposition = true
+photons_per_pass = 300
+[[scenes]]
+path = "walls/scene.xml"
+reference = "reference"
+probes = { middle = [6, 4] }
+[[method]]
+integrator = "ppm"
+schedule = ["hachisuka", "knaus-zwicker"]
+[[method]]
+name = "nearest"
+integrator = "photonmapper"
+mode = "nearest"
+k = 20
+[[method]]
+name = "fixed"
+integrator = "photonmapper"
+[[method]]
+integrator = "path"
+)");
+    }
+
+    ExperimentOutcome run(const std::string& results, const ContinuationOptions& options = {},
+                          const std::optional<std::string>& only = std::nullopt) {
+        const Experiment experiment = read_experiment(folder_ / "tiny.toml");
+        return run_experiment(experiment, prepare_experiment(experiment, folder_ / results, only), folder_ / results,
+                              options);
+    }
+
+    /// Interrupts after so many passes of what is run.
+    ContinuationOptions interrupted_after(int passes, double seconds_between_saves = 1e9) {
+        return {.seconds_between_saves = seconds_between_saves,
+                .is_interrupted = [left = passes]() mutable { return --left == 0; }};
+    }
+
+    TestFolder folder_;
+};
+
+TEST_F(InterruptedExperiment, LeavesTheSameBits) {
+    run("whole");
+    int interruptions = 0;
+    while (run("cut", interrupted_after(1 + interruptions % 6)).is_interrupted) ++interruptions;
+    EXPECT_GT(interruptions, 12);
+    EXPECT_EQ(difference_of_results(folder_ / "whole", folder_ / "cut"), "");
+    EXPECT_EQ(difference_of_results(folder_ / "cut", folder_ / "whole"), "");
+}
+
+// A kill between the saves of two runs that share photons, or another choice of runs, leaves them at different passes.
+TEST_F(InterruptedExperiment, GoesOnFromDifferentPasses) {
+    run("whole");
+    EXPECT_TRUE(run("cut", interrupted_after(4), "*hachisuka*").is_interrupted);
+    EXPECT_TRUE(run("cut", interrupted_after(2), "*fixed*").is_interrupted);
+    EXPECT_TRUE(run("cut", interrupted_after(3)).is_interrupted);
+    EXPECT_FALSE(run("cut").is_interrupted);
+    EXPECT_EQ(difference_of_results(folder_ / "whole", folder_ / "cut"), "");
+    EXPECT_EQ(difference_of_results(folder_ / "cut", folder_ / "whole"), "");
+}
+
+TEST_F(InterruptedExperiment, KeepsTheTimeThatItTook) {
+    EXPECT_TRUE(run("cut", interrupted_after(5), "*path*seed-1").is_interrupted);
+    const std::string before = read_text_file(folder_ / "cut/runs/walls_path_seed-1/iterations.csv");
+    run("cut", {}, "*path*seed-1");
+    const std::string after = read_text_file(folder_ / "cut/runs/walls_path_seed-1/iterations.csv");
+    EXPECT_EQ(after.substr(0, before.size()), before);
+    double seconds = 0.0;
+    for (const auto& row : read_rows(folder_ / "cut/runs/walls_path_seed-1/iterations.csv")) {
+        if (row.at("pass") == "0") continue;
+        EXPECT_GE(std::stod(row.at("seconds")), seconds);
+        seconds = std::stod(row.at("seconds"));
+    }
+}
+
+TEST_F(InterruptedExperiment, RefusesADamagedCheckpointBeforeAnythingIsRunAndBeginsAnewBesideIt) {
+    run("whole");
+    EXPECT_TRUE(run("cut", interrupted_after(3)).is_interrupted);
+    const std::filesystem::path file = folder_ / "cut/runs/walls_nearest_seed-1/checkpoint";
+    ASSERT_TRUE(std::filesystem::exists(file));
+    std::filesystem::resize_file(file, 100);
+    EXPECT_EQ(message_of([&] { run("cut"); }),
+              file.string() +
+                  ": is damaged or truncated: its checksum is not that of its content; remove it, or begin anew beside "
+                  "it with --fresh");
+    EXPECT_EQ(std::filesystem::file_size(file), 100u);
+
+    EXPECT_FALSE(run("cut", {.fresh = true}).is_interrupted);
+    EXPECT_EQ(std::filesystem::file_size(file.string() + ".old"), 100u);
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_ / "cut"))
+        if (entry.path().extension() == ".old") std::filesystem::remove(entry.path());
+    EXPECT_EQ(difference_of_results(folder_ / "whole", folder_ / "cut"), "");
+}
+
+TEST_F(InterruptedExperiment, RefusesTheCheckpointOfOtherSettings) {
+    EXPECT_TRUE(run("cut", interrupted_after(3)).is_interrupted);
+    std::string text = read_text_file(folder_ / "tiny.toml");
+    text.replace(text.find("k = 20"), 6, "k = 21");
+    folder_.write("tiny.toml", text);
+    EXPECT_NE(message_of([&] { run("cut"); }).find("walls_nearest_seed-1/checkpoint: is of another run"),
+              std::string::npos);
+}
+
+TEST_F(InterruptedExperiment, SavesAfterEveryPassThatTakesLongerThanTheSeconds) {
+    std::set<std::filesystem::file_time_type> times;
+    ContinuationOptions options{.seconds_between_saves = 0.0};
+    options.is_interrupted = [&] {
+        const auto file = folder_ / "cut/runs/walls_path_seed-1/checkpoint";
+        if (std::filesystem::exists(file)) times.insert(std::filesystem::last_write_time(file));
+        return false;
+    };
+    run("cut", options, "*path*seed-1");
+    EXPECT_EQ(times.size(), 4u);  // asked after passes 1 to 5, before it is saved
+}
+
+}  // namespace
+}  // namespace photonlab
