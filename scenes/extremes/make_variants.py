@@ -10,7 +10,7 @@ from pathlib import Path
 
 UNITS = [1e-100, 1e-50, 1e-20, 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e20, 1e50, 1e100]
 OFFSET_RADIUS = 0.017    # no power of two, which doubles hold as exactly 10^14 scene sizes away
-OFFSETS = [1.0, 1e2, 1e4, 1e6, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14]        # in sizes of the scene
+OFFSETS = [1.0, 1e2, 1e4, 1e6, 1e8, 1e9, 1e10, 1e11, 2e11, 4e11]        # in sizes of the scene; from 4.5e11 on they are refused
 LIGHTS = [1e-45, 1e-44, 1e-43, 1e-42, 1e-40, 1e-35, 1e-30, 1e-20, 1e-10, 1.0, 1e10, 1e20, 1e30, 1e37, 1e38]
 RADII = [2.0 ** -power for power in (23, 22, 21, 20, 18, 15, 12, 9, 6)]    # in sizes of the scene; floats hold them exactly
 INDICES = [1.0, 1.0000001, 1.0001, 1.1, 1.33, 1.5, 1.8, 2.0, 2.4, 3.0, 4.0]

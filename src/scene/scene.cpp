@@ -144,6 +144,18 @@ struct ToUnitBox {
     float length(double scene_units) const { return static_cast<float>(scene_units / unit_length); }
 };
 
+/// How far apart neighbouring doubles are at the farthest coordinate of the box, as a share of its size: where things
+/// are in the scene cannot be said any better.
+double coarseness_of(const Bounds& box, double size) {
+    double farthest = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+        farthest = std::max({farthest, std::abs(box.lower[axis]), std::abs(box.upper[axis])});
+    return std::numeric_limits<double>::epsilon() * farthest / size;
+}
+
+constexpr double noted_coarseness = 1e-6;  // tens of times that of the floats in the unit box
+constexpr double worst_coarseness = 1e-4;  // light a thirtieth of the scene above a floor is then off by 0.1%
+
 /// The box that becomes the unit box. A point light's intensity is divided by the square of its size, which must
 /// therefore be a double too.
 ToUnitBox make_unit_box(const Bounds& box, const std::string& place) {
@@ -156,6 +168,12 @@ ToUnitBox make_unit_box(const Bounds& box, const std::string& place) {
         throw InputError(
             place, fmt::format("the scene is {} scene units large around ({} {} {}): beyond double precision", largest,
                                centre.x, centre.y, centre.z));
+    if (coarseness_of(box, unit_length) > worst_coarseness)
+        throw InputError(
+            place, fmt::format("the scene is {:g} scene units large around ({:g} {:g} {:g}), where neighbouring doubles "
+                               "are {:.2g} of its size apart; expected at most {:g}: move it closer to the origin",
+                               largest, centre.x, centre.y, centre.z, coarseness_of(box, unit_length),
+                               worst_coarseness));
     return {centre, unit_length};
 }
 
@@ -327,6 +345,10 @@ Scene build_scene(const SceneDescription& description, std::optional<Resolution>
     scene.name = description.name;
     scene.hash = description.hash;
     scene.notes = description.notes;
+    if (const double coarseness = bounds.is_empty() ? 0.0 : coarseness_of(bounds, to_unit_box.unit_length);
+        coarseness > noted_coarseness)
+        scene.notes.push_back(fmt::format(
+            "so far from the origin coordinates are rounded to {:.2g} of the scene's size: move it closer", coarseness));
     scene.unit_length = to_unit_box.unit_length;
     scene.centre = to_unit_box.centre;
     scene.materials = description.materials;

@@ -88,6 +88,29 @@ TEST(ScaleAndLight, AMillionSceneSizesFromTheOriginNothingChanges) {
         }
 }
 
+// Coordinates are doubles: farther out they no longer say where things are. In between, what is lost is noted.
+TEST(ScaleAndLight, WhereDoublesNoLongerHoldTheSceneIsRefused) {
+    const auto far_away = [](double unit, double sizes) {
+        return changed(FootOfLight{}.description(), unit, VectorD(0.1, -sizes, 0.3) * unit, 1.0);
+    };
+    for (const double unit : {1e-6, 1.0, 1e6}) {
+        for (const double sizes : {1.0, 1e6, 1e9})
+            EXPECT_TRUE(build_scene(far_away(unit, sizes)).notes.empty()) << sizes;
+        for (const double sizes : {1e10, 4e11}) {
+            const std::vector<std::string> notes = build_scene(far_away(unit, sizes)).notes;
+            ASSERT_EQ(notes.size(), 1u) << sizes;
+            EXPECT_EQ(notes[0].rfind("so far from the origin coordinates are rounded to ", 0), 0u) << notes[0];
+        }
+        for (const double sizes : {5e11, 1e13, 1e30}) try {
+                build_scene(far_away(unit, sizes));
+                FAIL() << sizes;
+            } catch (const InputError& error) {
+                const std::string message = error.what();
+                EXPECT_NE(message.find("move it closer to the origin"), std::string::npos) << message;
+            }
+    }
+}
+
 // ---------------------------------------------------------------------------------------------------------------------
 
 /// A sheet of this thickness, its sides of different colour, with a light 1/4 above or below it.
