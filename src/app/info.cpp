@@ -15,6 +15,8 @@
 #include "scene/loader.h"
 #include "scene/narrow_gaps.h"
 #include "transport/hit_points.h"
+#include "transport/left_out.h"
+#include "transport/photons.h"
 #include "transport/plain_images.h"
 
 namespace photonlab {
@@ -102,6 +104,8 @@ void info(const InfoOptions& options) {
         fmt::print("auto radius {:.6g} in the mean (scene units)\n",
                    3.0 * sum / static_cast<double>(count) * scene.unit_length);
     }
+    fmt::print("photons     {} bytes each, one kind\n", sizeof(Photon));
+    for (const std::string& what : what_is_left_out(scene, hit_points)) fmt::print("left out    {}\n", what);
     for (const std::string& note : scene.notes) fmt::print("note        {}\n", note);
     print_narrow_gaps(scene);
     for (const std::string& reason : why_images_are_plain(scene, hit_points)) fmt::print("warning     {}\n", reason);

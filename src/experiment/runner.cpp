@@ -212,7 +212,6 @@ std::vector<RunState> run_methods(const Scene& scene, const HitPoints& hit_point
             RunningMethod& method = methods[i];
             if (method.next_pass != pass) continue;
             ++method.next_pass;
-            method.state.report = method.integrator->report();
             method.state.times = method.passes_alone;
             if (!is_asked) continue;
             StageClock clock;
@@ -268,7 +267,10 @@ std::vector<RunState> run_methods(const Scene& scene, const HitPoints& hit_point
         if (continuation.goes_on && !continuation.goes_on(pass, states)) break;
     }
     std::vector<RunState> last;
-    for (RunningMethod& method : methods) last.push_back(std::move(method.state));
+    for (RunningMethod& method : methods) {
+        method.state.report = method.integrator->report();
+        last.push_back(std::move(method.state));
+    }
     return last;
 }
 

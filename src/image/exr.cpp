@@ -165,10 +165,22 @@ Image read_pixels(const std::filesystem::path& file, Metadata* metadata) {
     return image;
 }
 
+// total(), pixel by pixel: in double it would be the peak of memory.
+std::vector<Color> rounded_total(const Image& image) {
+    std::vector<Color> sum(image.layers[0].pixels.size());
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+        ColorD pixel(0.0);
+        for (const Layer& layer : image.layers) pixel += ColorD(layer.pixels[i]);
+        sum[i] = Color(pixel);
+    }
+    return sum;
+}
+
 // The file in memory: OpenEXR writes its table of offsets in a destructor, where a full disk cannot be reported.
 std::string encode(const Image& image, const Metadata& metadata) {
     Imf::Header header(image.width, image.height);
     header.compression() = Imf::ZIP_COMPRESSION;
+    header.zipCompressionLevel() = 1;  // noise hardly shrinks further: 2% in three times the time
     for (const auto& [name, value] : metadata) {
         if (is_reserved(header, name)) throw InputError("metadata cannot be called \"" + name + "\": OpenEXR uses it");
         header.insert(name, Imf::StringAttribute(value));
@@ -181,9 +193,7 @@ std::string encode(const Image& image, const Metadata& metadata) {
         for (const Layer& layer : image.layers) names += (names.empty() ? "" : ",") + layer.name;
     if (layered) header.insert(layers_attribute, Imf::StringAttribute(names));
 
-    std::vector<Color> sum;
-    if (layered)
-        for (const ColorD& pixel : total(image)) sum.emplace_back(pixel);
+    const std::vector<Color> sum = layered ? rounded_total(image) : std::vector<Color>{};
 
     Imf::FrameBuffer frame;
     const auto add = [&](const std::string& prefix, const std::vector<Color>& pixels) {

@@ -1,21 +1,11 @@
 #include "integrators/layers.h"
 
 #include <array>
-#include <numeric>
 
 #include "core/parallel.h"
 #include "transport/direct_light.h"
 
 namespace photonlab {
-
-std::vector<Color> to_pixels(const HitPoints& hit_points, const std::vector<ColorD>& radiance, double scale) {
-    std::vector<ColorD> sums(pixel_count(hit_points), ColorD(0.0));
-    for (std::size_t i = 0; i < hit_points.points.size(); ++i) {
-        const HitPoint& point = hit_points.points[i];
-        sums[point.pixel] += radiance[i] * ColorD(point.weight) * scale;
-    }
-    return {sums.begin(), sums.end()};
-}
 
 Image make_layers(const HitPoints& hit_points, int max_depth, std::vector<Color> direct, std::vector<Color> gathered) {
     const std::vector<ColorD> seen = emission_image(hit_points, max_depth);
@@ -25,15 +15,6 @@ Image make_layers(const HitPoints& hit_points, int max_depth, std::vector<Color>
             {{std::string(emission_layer), std::move(emission)},
              {std::string(direct_layer), std::move(direct)},
              {std::string(gathered_layer), std::move(gathered)}}};
-}
-
-void set_radii(IntegratorReport& report, const std::vector<double>& radii, double unit_length) {
-    if (radii.empty()) return;
-    const auto [smallest, largest] = std::minmax_element(radii.begin(), radii.end());
-    const double sum = std::accumulate(radii.begin(), radii.end(), 0.0);
-    report.radius_min = *smallest * unit_length;
-    report.radius_mean = sum / static_cast<double>(radii.size()) * unit_length;
-    report.radius_max = *largest * unit_length;
 }
 
 namespace {
@@ -79,17 +60,18 @@ std::size_t DirectLight::blocks() const {
 }
 
 void DirectLight::add_samples(std::uint64_t pass, std::size_t block, std::vector<ColorD>& sums) const {
-    const std::vector<HitPoint>& points = context_.hit_points.points;
+    const HitPointList& points = context_.hit_points.points;
     const BlockRange range = block_range(block, points.size(), hit_points_per_block);
     std::array<ColorD, hit_points_per_block> sum_of;
     sum_of.fill(ColorD(0.0));
     WaitingConnections waiting;
     for (std::size_t i = range.begin; i < range.end; ++i) {
-        if (!depth_allows(max_depth_, points[i].camera_edges + 1u)) continue;
+        const HitPoint point = points[i];
+        if (!depth_allows(max_depth_, point.camera_edges + 1u)) continue;
         RandomStream random(context_.seed, context_.direct_purpose, pass, i);
-        const Surface surface = surface_at(context_.scene, points[i]);
+        const Surface surface = surface_at(context_.scene, point);
         for (int sample = 0; sample < samples_; ++sample) {
-            const auto connection = draw_connection(context_.scene, surface, points[i].outgoing, random);
+            const auto connection = draw_connection(context_.scene, surface, point.outgoing, random);
             if (connection) waiting.add(context_.scene, *connection, sum_of[i - range.begin]);
         }
     }
@@ -116,10 +98,13 @@ void DirectLight::run_pass(std::uint64_t pass) {
 
 std::vector<Color> DirectLight::layer() const {
     if (samples_ == 0) return std::vector<Color>(pixel_count(context_.hit_points), Color(0.0f));
-    if (passes_ > 0) return to_pixels(context_.hit_points, sums_, 1.0 / static_cast<double>(passes_));
+    if (passes_ > 0)
+        return to_pixels(
+            context_.hit_points, [&](std::size_t i) { return sums_[i]; }, 1.0 / static_cast<double>(passes_));
     std::vector<ColorD> once(sums_.size(), ColorD(0.0));
     add_samples(0, once);
-    return to_pixels(context_.hit_points, once, 1.0);
+    return to_pixels(
+        context_.hit_points, [&](std::size_t i) { return once[i]; }, 1.0);
 }
 
 }  // namespace photonlab

@@ -114,7 +114,7 @@ public:
 
     IntegratorReport report() const override {
         IntegratorReport report;
-        report.hit_point_bytes = sums_.size() * (sizeof(HitPoint) + sizeof(PathSample));
+        report.hit_point_bytes = hit_point_bytes(context_.hit_points) + sums_.size() * sizeof(PathSample);
         return report;
     }
 
@@ -125,7 +125,7 @@ public:
 
 private:
     void add_paths(std::uint64_t pass, std::vector<PathSample>& sums) const {
-        const std::vector<HitPoint>& points = context_.hit_points.points;
+        const HitPointList& points = context_.hit_points.points;
         parallel_for(block_count(points.size(), hit_points_per_block), context_.threads, [&](std::size_t block) {
             const BlockRange range = block_range(block, points.size(), hit_points_per_block);
             for (std::size_t i = range.begin; i < range.end; ++i) {
@@ -138,14 +138,12 @@ private:
     }
 
     Image image_of(const std::vector<PathSample>& sums, double scale, bool with_gathered) const {
-        std::vector<ColorD> direct(sums.size());
-        std::vector<ColorD> gathered(sums.size(), ColorD(0.0));
-        for (std::size_t i = 0; i < sums.size(); ++i) {
-            direct[i] = sums[i].direct;
-            if (with_gathered) gathered[i] = sums[i].gathered;
-        }
-        return make_layers(context_.hit_points, max_depth_, to_pixels(context_.hit_points, direct, scale),
-                           to_pixels(context_.hit_points, gathered, scale));
+        return make_layers(context_.hit_points, max_depth_,
+                           to_pixels(
+                               context_.hit_points, [&](std::size_t i) { return sums[i].direct; }, scale),
+                           to_pixels(
+                               context_.hit_points,
+                               [&](std::size_t i) { return with_gathered ? sums[i].gathered : ColorD(0.0); }, scale));
     }
 
     const int max_depth_;

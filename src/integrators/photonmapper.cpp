@@ -15,6 +15,8 @@ struct Search {
     std::vector<std::uint32_t> counts;  ///< photons that each hit point found in the last gather
     double max_radius = 0.0;            ///< mode `nearest`, unit box
     std::size_t k = 0;                  ///< mode `nearest`
+
+    std::uint64_t bytes() const { return radii.size() * sizeof(double) + counts.size() * sizeof(std::uint32_t); }
 };
 
 class PhotonMapping : public Integrator {
@@ -31,14 +33,16 @@ public:
         caustic_.max_radius = unit_box(settings.caustic_max_radius, default_caustic_share * global_.max_radius);
         const std::size_t points = context.hit_points.points.size();
         global_.radii.assign(points, global_.max_radius);
-        caustic_.radii.assign(points, caustic_.max_radius);
         global_.counts.assign(points, 0);
-        caustic_.counts.assign(points, 0);
+        if (has_specular_surfaces(context.scene)) {
+            caustic_.radii.assign(points, caustic_.max_radius);
+            caustic_.counts.assign(points, 0);
+        }
         radiance_.assign(points, ColorD(0.0));
         if (settings.mode == GatherMode::Nearest) return;
         for (std::size_t i = 0; i < points; ++i) {
             global_.radii[i] = initial_radius(settings, context, i);
-            caustic_.radii[i] = unit_box(settings.caustic_radius, global_.radii[i]);
+            if (!caustic_.radii.empty()) caustic_.radii[i] = unit_box(settings.caustic_radius, global_.radii[i]);
         }
     }
 
@@ -63,24 +67,24 @@ public:
         scale_ =
             context_.scene.total_power / static_cast<double>(std::max<std::uint64_t>(1, photons.paths_of_all_passes()));
         return make_layers(context_.hit_points, settings_.max_depth, std::move(direct),
-                           to_pixels(context_.hit_points, radiance_, scale_));
+                           to_pixels(
+                               context_.hit_points, [&](std::size_t i) { return radiance_[i]; }, scale_));
     }
 
     /// Radii are those of the global map.
     IntegratorReport report() const override {
         IntegratorReport report = report_;
-        const std::size_t points = context_.hit_points.points.size();
-        report.hit_point_bytes =
-            points * (sizeof(HitPoint) + 2 * (sizeof(double) + sizeof(std::uint32_t)) + sizeof(ColorD)) +
-            direct_.bytes();
-        set_radii(report, global_.radii, context_.scene.unit_length);
+        report.hit_point_bytes = hit_point_bytes(context_.hit_points) + radiance_.size() * sizeof(ColorD) +
+                                 global_.bytes() + caustic_.bytes() + direct_.bytes();
+        set_radii(
+            report, global_.radii.size(), [&](std::size_t i) { return global_.radii[i]; }, context_.scene.unit_length);
         return report;
     }
 
     std::optional<GatherState> gather_state(std::size_t hit_point) const override {
         GatherState state;
         state.radius = global_.radii[hit_point] * context_.scene.unit_length;
-        state.photons = global_.counts[hit_point] + caustic_.counts[hit_point];
+        state.photons = global_.counts[hit_point] + (caustic_.counts.empty() ? 0u : caustic_.counts[hit_point]);
         state.density = global_.counts[hit_point] / (pi * state.radius * state.radius);
         state.radiance = radiance_[hit_point] * scale_;
         return state;
@@ -99,7 +103,7 @@ private:
     /// Adds what the photons of one map bring to every hit point.
     void gather(const PhotonMap& map, Search& search) {
         if (map.size() == 0) return;
-        const std::vector<HitPoint>& points = context_.hit_points.points;
+        const HitPointList& points = context_.hit_points.points;
         const std::size_t blocks = block_count(points.size(), hit_points_per_block);
         std::vector<std::uint64_t> gathered(blocks, 0);
         parallel_for(blocks, context_.threads, [&](std::size_t block) {

@@ -61,19 +61,19 @@ public:
         enter(Stage::Direct);
         std::vector<Color> direct = direct_.layer();
         enter(Stage::Gather);
-        std::vector<ColorD> radiance(statistics_.size());
-        for (std::size_t i = 0; i < statistics_.size(); ++i) radiance[i] = statistics_[i].estimate;
         return make_layers(context_.hit_points, settings_.max_depth, std::move(direct),
-                           to_pixels(context_.hit_points, radiance, context_.scene.total_power));
+                           to_pixels(
+                               context_.hit_points, [&](std::size_t i) { return statistics_[i].estimate; },
+                               context_.scene.total_power));
     }
 
     IntegratorReport report() const override {
         IntegratorReport report = report_;
-        report.hit_point_bytes = context_.hit_points.points.size() * sizeof(HitPoint) +
-                                 statistics_.size() * sizeof(GatherStatistics) + direct_.bytes();
-        std::vector<double> radii(statistics_.size());
-        for (std::size_t i = 0; i < radii.size(); ++i) radii[i] = std::sqrt(statistics_[i].squared_radius);
-        set_radii(report, radii, context_.scene.unit_length);
+        report.hit_point_bytes =
+            hit_point_bytes(context_.hit_points) + statistics_.size() * sizeof(GatherStatistics) + direct_.bytes();
+        set_radii(
+            report, statistics_.size(), [&](std::size_t i) { return std::sqrt(statistics_[i].squared_radius); },
+            context_.scene.unit_length);
         return report;
     }
 

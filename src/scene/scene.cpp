@@ -327,6 +327,11 @@ void add_emitters(Scene& scene, const SceneDescription& description, const ToUni
 
 }  // namespace
 
+bool has_specular_surfaces(const Scene& scene) {
+    return std::any_of(scene.shapes.begin(), scene.shapes.end(),
+                       [&](const Shape& shape) { return is_specular(scene.materials[shape.material].bsdf); });
+}
+
 Vector Camera::direction(double x, double y) const {
     return Vector((forward + right * (x / width - 0.5) + down * (y / height - 0.5)).normalized());
 }

@@ -120,6 +120,9 @@ struct Scene {
     std::unique_ptr<EmbreeScene, EmbreeSceneDeleter> embree;
 };
 
+/// True when some surface is a mirror or glass: without, no photon is caustic and no camera path branches.
+bool has_specular_surfaces(const Scene& scene);
+
 /// Resolution to render at, in place of the scene file's; the horizontal field of view is kept.
 struct Resolution {
     int width;

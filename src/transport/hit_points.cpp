@@ -1,5 +1,8 @@
 #include "transport/hit_points.h"
 
+#include <stdexcept>
+#include <utility>
+
 #include "core/error.h"
 #include "core/parallel.h"
 #include "scene/emitter.h"
@@ -10,8 +13,10 @@ namespace {
 
 constexpr int tile_size = 16;  // pixels; hit points of a tile stay together in the list
 
+constexpr std::size_t tiles_per_round = 64;  // traced, then joined: their memory is reused
+
 struct Tile {
-    std::vector<HitPoint> points;
+    HitPointList points;
     std::vector<float> footprints;
     std::vector<SeenEmission> emission;
     double weight_cut = 0.0;
@@ -19,6 +24,18 @@ struct Tile {
 };
 
 constexpr std::uint32_t edge_cap = 10'000;  // as for photons: ends what mirrors hold captive
+
+/// Empties the tile but keeps its memory.
+void move_to_end(HitPoints& result, Tile& tile) {
+    result.points.append(tile.points);
+    result.footprints.insert(result.footprints.end(), tile.footprints.begin(), tile.footprints.end());
+    result.emission.insert(result.emission.end(), tile.emission.begin(), tile.emission.end());
+    tile.points.clear();
+    tile.footprints.clear();
+    tile.emission.clear();
+    result.weight_cut += std::exchange(tile.weight_cut, 0.0);
+    result.nonfinite += std::exchange(tile.nonfinite, 0);
+}
 
 /// A camera path on its way.
 struct Branch {
@@ -44,6 +61,67 @@ int grid_size(int samples_per_pixel) {
 
 }  // namespace
 
+HitPointList::Kept HitPointList::kept_for(const Scene& scene) {
+    Kept kept{false, false};
+    for (const Shape& shape : scene.shapes) {
+        const Material& material = scene.materials[shape.material];
+        if (!std::holds_alternative<Diffuse>(material.bsdf) && !is_specular(material.bsdf)) kept.outgoing = true;
+        if (material.texture) kept.texture_coordinates = true;
+    }
+    return kept;
+}
+
+void HitPointList::push_back(const HitPoint& point, bool is_diffuse) {
+    constexpr std::size_t searched = 32;  // surfaces that meet in a tile are few
+    const Facing facing{point.normal, point.geometric_normal, point.material};
+    std::size_t index = facings_.size();
+    for (std::size_t back = 1; back <= std::min(searched, facings_.size()) && index == facings_.size(); ++back)
+        if (facings_[facings_.size() - back] == facing) index = facings_.size() - back;
+    if (index == facings_.size()) facings_.push_back(facing);
+
+    const bool is_plain = is_diffuse && point.camera_edges == 1 && point.weight == Color(share_);
+    records_.push_back({.position = point.position,
+                        .pixel = point.pixel,
+                        .facing = static_cast<std::uint32_t>(index),
+                        .view = is_plain ? plain_view : static_cast<std::uint32_t>(views_.size())});
+    if (!is_plain) views_.push_back({point.weight, point.camera_edges});
+    if (!is_plain && keeps_.outgoing) outgoing_.push_back(is_diffuse ? point.normal : point.outgoing);
+    if (keeps_.texture_coordinates) texture_coordinates_.push_back(point.texture_coordinate);
+}
+
+void HitPointList::append(const HitPointList& other) {
+    const auto first_facing = static_cast<std::uint32_t>(facings_.size());
+    const auto first_view = static_cast<std::uint32_t>(views_.size());
+    for (Record record : other.records_) {
+        record.facing += first_facing;
+        if (record.view != plain_view) record.view += first_view;
+        records_.push_back(record);
+    }
+    facings_.insert(facings_.end(), other.facings_.begin(), other.facings_.end());
+    views_.insert(views_.end(), other.views_.begin(), other.views_.end());
+    outgoing_.insert(outgoing_.end(), other.outgoing_.begin(), other.outgoing_.end());
+    texture_coordinates_.insert(texture_coordinates_.end(), other.texture_coordinates_.begin(),
+                                other.texture_coordinates_.end());
+}
+
+void HitPointList::clear() {
+    records_.clear();
+    facings_.clear();
+    views_.clear();
+    outgoing_.clear();
+    texture_coordinates_.clear();
+}
+
+HitPoint HitPointList::at(std::size_t index) const {
+    if (index >= size()) throw std::out_of_range("HitPointList::at");
+    return (*this)[index];
+}
+
+std::uint64_t HitPointList::bytes() const {
+    return records_.size() * sizeof(Record) + facings_.size() * sizeof(Facing) + views_.size() * sizeof(View) +
+           outgoing_.size() * sizeof(Vector) + texture_coordinates_.size() * sizeof(Imath::V2f);
+}
+
 HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int threads, double branch_cutoff) {
     constexpr std::size_t material_limit = std::size_t{1} << 16;  // HitPoint::material
     if (scene.materials.size() > material_limit)
@@ -54,12 +132,18 @@ HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int thread
     const float smallest_weight = static_cast<float>(branch_cutoff);
     const float share = 1.0f / static_cast<float>(samples_per_pixel);
     const int tiles_across = (camera.width + tile_size - 1) / tile_size;
+    const HitPointList::Kept kept = HitPointList::kept_for(scene);
     const int tiles_down = (camera.height + tile_size - 1) / tile_size;
 
     HitPoints result;
     result.width = camera.width;
     result.height = camera.height;
     result.samples_per_pixel = samples_per_pixel;
+    result.points = HitPointList(share, kept);
+    // Untouched memory costs nothing, and growing costs a copy.
+    const std::size_t samples = pixel_count(result) * static_cast<std::size_t>(samples_per_pixel);
+    result.points.reserve(samples);
+    result.footprints.reserve(samples);
 
     const auto trace_branch = [&](const Branch& branch, std::uint32_t pixel, std::vector<Branch>& next, Tile& tile) {
         const std::optional<Hit> hit = intersect(scene, branch.ray);
@@ -85,7 +169,8 @@ HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int thread
                                    .pixel = pixel,
                                    .material = static_cast<std::uint16_t>(surface->material),
                                    .camera_edges = static_cast<std::uint16_t>(branch.edges),
-                                   .texture_coordinate = surface->texture_coordinate});
+                                   .texture_coordinate = surface->texture_coordinate},
+                                  std::holds_alternative<Diffuse>(surface->bsdf));
             tile.footprints.push_back(footprint);
             return;
         }
@@ -117,8 +202,7 @@ HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int thread
         }
     };
 
-    std::vector<Tile> tiles(static_cast<std::size_t>(tiles_across) * static_cast<std::size_t>(tiles_down));
-    parallel_for(tiles.size(), threads, [&](std::size_t index) {
+    const auto trace_tile = [&](std::size_t index, Tile& tile) {
         const int left = static_cast<int>(index) % tiles_across * tile_size;
         const int top = static_cast<int>(index) / tiles_across * tile_size;
         for (int place = 0; place < tile_size * tile_size; ++place) {
@@ -126,16 +210,17 @@ HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int thread
             const int y = top + every_second_bit(place >> 1);
             if (x >= camera.width || y >= camera.height) continue;
             for (int sample = 0; sample < samples_per_pixel; ++sample)
-                trace_sample(x, y, x + (sample % grid + 0.5) / grid, y + (sample / grid + 0.5) / grid, tiles[index]);
+                trace_sample(x, y, x + (sample % grid + 0.5) / grid, y + (sample / grid + 0.5) / grid, tile);
         }
-    });
+    };
 
-    for (const Tile& tile : tiles) {
-        result.points.insert(result.points.end(), tile.points.begin(), tile.points.end());
-        result.footprints.insert(result.footprints.end(), tile.footprints.begin(), tile.footprints.end());
-        result.emission.insert(result.emission.end(), tile.emission.begin(), tile.emission.end());
-        result.weight_cut += tile.weight_cut;
-        result.nonfinite += tile.nonfinite;
+    const std::size_t tiles = static_cast<std::size_t>(tiles_across) * static_cast<std::size_t>(tiles_down);
+    std::vector<Tile> round(std::min(tiles, tiles_per_round));
+    for (Tile& tile : round) tile.points = HitPointList(share, kept);
+    for (std::size_t first = 0; first < tiles; first += round.size()) {
+        const std::size_t in_round = std::min(round.size(), tiles - first);
+        parallel_for(in_round, threads, [&](std::size_t slot) { trace_tile(first + slot, round[slot]); });
+        for (std::size_t slot = 0; slot < in_round; ++slot) move_to_end(result, round[slot]);
     }
     result.weight_cut /= static_cast<double>(pixel_count(result));
     return result;

@@ -22,12 +22,109 @@ struct HitPoint {
     Vector position;
     Vector normal;               ///< shading normal, unit, facing `outgoing`
     Vector geometric_normal;     ///< unit, facing `outgoing`
-    Vector outgoing;             ///< unit, towards the camera's side of the path
+    Vector outgoing;             ///< unit, towards the camera's side of the path; the normal where the material is
+                                 ///< diffuse and looks the same from everywhere
     Color weight;                ///< path throughput from here to the pixel, times the sample's share of the pixel
     std::uint32_t pixel;         ///< y * width + x
     std::uint16_t material;      ///< index into Scene::materials
     std::uint16_t camera_edges;  ///< edges of the path from the camera to here; 1 when seen directly
     Imath::V2f texture_coordinate;
+};
+
+/// Hit points, each in 24 bytes and what it does not share with its neighbours. They are stored once and read often:
+/// elements are made when they are asked for.
+class HitPointList {
+public:
+    /// What the scene makes worth keeping; without it, all points have the same.
+    struct Kept {
+        bool outgoing = true;  ///< some material that is gathered at is not diffuse
+        bool texture_coordinates = true;
+    };
+
+    static Kept kept_for(const Scene& scene);
+
+    /// `share`: weight of points that the camera sees directly.
+    explicit HitPointList(float share = 1.0f, Kept keeps = {true, true}) : share_(share), keeps_(keeps) {}
+
+    void reserve(std::size_t count) { records_.reserve(count); }
+    void push_back(const HitPoint& point, bool is_diffuse);
+    void append(const HitPointList& other);
+    void clear();  ///< keeps the memory
+
+    std::size_t size() const { return records_.size(); }
+    bool empty() const { return records_.empty(); }
+    HitPoint operator[](std::size_t index) const {
+        const Record& record = records_[index];
+        const Facing& facing = facings_[record.facing];
+        HitPoint point{.position = record.position,
+                       .normal = facing.normal,
+                       .geometric_normal = facing.geometric_normal,
+                       .outgoing = facing.normal,
+                       .weight = Color(share_),
+                       .pixel = record.pixel,
+                       .material = facing.material,
+                       .camera_edges = 1,
+                       .texture_coordinate = Imath::V2f(0.0f)};
+        if (record.view != plain_view) {
+            const View& view = views_[record.view];
+            point.weight = view.weight;
+            point.camera_edges = view.camera_edges;
+            if (keeps_.outgoing) point.outgoing = outgoing_[record.view];
+        }
+        if (keeps_.texture_coordinates) point.texture_coordinate = texture_coordinates_[index];
+        return point;
+    }
+    HitPoint at(std::size_t index) const;  ///< std::out_of_range where there is none
+
+    class Iterator {
+    public:
+        Iterator(const HitPointList& list, std::size_t index) : list_(list), index_(index) {}
+        HitPoint operator*() const { return list_[index_]; }
+        Iterator& operator++() {
+            ++index_;
+            return *this;
+        }
+        bool operator!=(const Iterator& other) const { return index_ != other.index_; }
+
+    private:
+        const HitPointList& list_;
+        std::size_t index_;
+    };
+    Iterator begin() const { return {*this, 0}; }
+    Iterator end() const { return {*this, size()}; }
+
+    std::uint64_t bytes() const;
+
+private:
+    static constexpr std::uint32_t plain_view = ~0u;
+
+    struct Record {
+        Vector position;
+        std::uint32_t pixel;
+        std::uint32_t facing;  // into facings_
+        std::uint32_t view;    // into views_, or plain_view
+    };
+    /// What neighbours on a flat surface share.
+    struct Facing {
+        Vector normal;
+        Vector geometric_normal;
+        std::uint16_t material;
+        bool operator==(const Facing&) const = default;
+    };
+    /// Of points that are seen by mirrors or glass, or whose material is not diffuse: all others are seen in the same
+    /// way.
+    struct View {
+        Color weight;
+        std::uint16_t camera_edges;
+    };
+
+    float share_;
+    Kept keeps_;
+    std::vector<Record> records_;
+    std::vector<Facing> facings_;
+    std::vector<View> views_;
+    std::vector<Vector> outgoing_;                 // one a view, or none
+    std::vector<Imath::V2f> texture_coordinates_;  // one a point, or none
 };
 
 /// Light that the camera sees without a bounce at a hit point.
@@ -42,13 +139,13 @@ struct HitPoints {
     int width = 0;
     int height = 0;
     int samples_per_pixel = 1;
-    std::vector<HitPoint> points;  ///< tile by tile and along a Morton curve in each, so that neighbours in the list
-                                   ///< are neighbours in space
+    HitPointList points;  ///< tile by tile and along a Morton curve in each, so that neighbours in the list are
+                          ///< neighbours in space; those of a pixel follow each other
     std::vector<float>
         footprints;  ///< one a point, unit box: unfolded distance from the camera times the pixel's angle
-    std::vector<SeenEmission> emission;
-    double weight_cut = 0.0;      ///< throughput of the branches that were ended, mean channel, mean over pixels
-    std::uint64_t nonfinite = 0;  ///< camera paths that met a non-finite value
+    std::vector<SeenEmission> emission;  ///< that of a pixel follows each other
+    double weight_cut = 0.0;             ///< throughput of the branches that were ended, mean channel, mean over pixels
+    std::uint64_t nonfinite = 0;         ///< camera paths that met a non-finite value
 };
 
 /// Where camera branches end unless a method says otherwise, and always those of a reference.
@@ -62,6 +159,11 @@ HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int thread
 
 inline std::size_t pixel_count(const HitPoints& hit_points) {
     return static_cast<std::size_t>(hit_points.width) * static_cast<std::size_t>(hit_points.height);
+}
+
+/// Of the points and what is kept with them.
+inline std::uint64_t hit_point_bytes(const HitPoints& hit_points) {
+    return hit_points.points.bytes() + hit_points.footprints.size() * sizeof(float);
 }
 
 /// One a pixel: the emission that paths of at most max_depth edges see.
