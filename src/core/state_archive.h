@@ -42,9 +42,10 @@ public:
 
     template <typename Value>
     void exchange(std::optional<Value>& value) {
-        bool is_there = value.has_value();
+        std::uint8_t is_there = value.has_value() ? 1 : 0;
         exchange(is_there);
-        if (!is_there) {
+        if (is_there > 1) throw InputError("expected 0 or 1 before a value, got " + std::to_string(is_there));
+        if (is_there == 0) {
             value.reset();
             return;
         }

@@ -81,10 +81,13 @@ void load_checkpoint(std::istream& stream, const std::string& place, const Check
 }
 
 bool load(const Checkpoint& checkpoint, const StateExchange& state) {
-    std::ifstream stream(checkpoint.file, std::ios::binary);
-    if (!stream && errno == ENOENT) return false;
-    if (!stream || std::filesystem::is_directory(checkpoint.file))
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(checkpoint.file, error);
+    if (status.type() == std::filesystem::file_type::not_found) return false;
+    if (!std::filesystem::is_regular_file(status))  // a pipe would be waited for
         throw refusal(checkpoint.file.string(), "cannot be read as a checkpoint", checkpoint);
+    std::ifstream stream(checkpoint.file, std::ios::binary);
+    if (!stream) throw refusal(checkpoint.file.string(), "cannot be read as a checkpoint", checkpoint);
     load_checkpoint(stream, checkpoint.file.string(), checkpoint, state);
     return true;
 }

@@ -196,7 +196,7 @@ void Recorder::record(const RunState& state, const Image& image) {
             last_total_ = errors;
             nonfinite_count_ += nonfinite;
         }
-        rows += csv_row({identity_, state, component, std::move(errors), nonfinite, peak_}) + "\n";
+        rows += csv_row({identity_, state, component, errors, nonfinite, peak_}) + "\n";
     }
     file_.append(rows);
 }

@@ -34,11 +34,12 @@ constexpr const char* layers_attribute = "photonlab.layers";
 constexpr const char* total_layer = "total";
 
 // A header may claim any size, and memory for it would be asked for before the first pixel is found missing. No
-// image here comes near the first limit; the second is far above what any of OpenEXR's compressions reaches.
+// image here comes near the first limit; the third is above what OpenEXR's compressions reach unless a huge image has
+// only one colour.
 constexpr std::int64_t largest_pixel_count = std::int64_t{1} << 28;  // of all layers
-constexpr std::int64_t largest_block = std::int64_t{1} << 29;        // bytes that OpenEXR decodes at once
+constexpr std::int64_t largest_block = std::int64_t{1} << 27;        // bytes that OpenEXR decodes at once
 constexpr int largest_side = 1 << 24;
-constexpr std::int64_t largest_compression_ratio = 100'000;
+constexpr std::int64_t largest_compression_ratio = 10'000;  // pixels of all layers to bytes
 
 // Names to which OpenEXR gives a meaning even where they are strings.
 bool is_reserved(const Imf::Header& header, const std::string& name) {
@@ -96,12 +97,31 @@ void require_channels(const std::string& place, const Imf::ChannelList& channels
     }
 }
 
-/// The most that OpenEXR decodes at once: a tile, or as many lines as any of its compressions takes together.
+/// Lines that a compression takes together.
+std::int64_t lines_at_once(Imf::Compression compression) {
+    switch (compression) {
+        case Imf::NO_COMPRESSION:
+        case Imf::RLE_COMPRESSION:
+        case Imf::ZIPS_COMPRESSION:
+            return 1;
+        case Imf::ZIP_COMPRESSION:
+        case Imf::PXR24_COMPRESSION:
+            return 16;
+        case Imf::PIZ_COMPRESSION:
+        case Imf::B44_COMPRESSION:
+        case Imf::B44A_COMPRESSION:
+        case Imf::DWAA_COMPRESSION:
+            return 32;
+        default:
+            return 256;
+    }
+}
+
+/// The most that OpenEXR decodes at once, a tile or some lines. It has room for several of them.
 std::int64_t block_bytes(const Imf::Header& header, std::int64_t width) {
-    constexpr std::int64_t most_lines = 256;
     std::int64_t pixel_bytes = 0;
     for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) pixel_bytes += 4;
-    if (!header.hasTileDescription()) return width * most_lines * pixel_bytes;
+    if (!header.hasTileDescription()) return width * lines_at_once(header.compression()) * pixel_bytes;
     const Imf::TileDescription& tile = header.tileDescription();
     return tile.xSize > largest_block / std::max(1u, tile.ySize) ? std::numeric_limits<std::int64_t>::max()
                                                                  : std::int64_t{tile.xSize} * tile.ySize * pixel_bytes;
