@@ -125,6 +125,23 @@ TEST_F(ProgramMistakes, OptionsAreRefused) {
         EXPECT_NE(refusal_of(arguments), "") << arguments;
 }
 
+TEST_F(ProgramMistakes, AreNotScenesWithoutLightOrSurfaceWhichAreBlackAndSayWhy) {
+    folder_.write("dark.xml", "<scene version='3.0.0'><sensor type='perspective'/></scene>");
+    folder_.write("dark.toml",
+                  "scenes = ['dark.xml']\npasses = 1\nresolution = [2, 2]\n[[method]]\nintegrator = 'ppm'\n");
+    for (const std::string arguments :
+         {"info dark.xml", "render dark.xml -o dark.exr --passes 1 --resolution 2x2", "run dark.toml -o out"}) {
+        const Outcome outcome = run_program(folder_.path(), arguments);
+        EXPECT_EQ(outcome.code, 0) << arguments;
+        for (const std::string reason : {"there is no light", "there is no surface"})
+            EXPECT_NE(outcome.output.find(reason + ": every image of this scene is black\n"), std::string::npos)
+                << arguments << "\n"
+                << outcome.output;
+    }
+    for (const Layer& layer : read_exr(folder_.path() / "dark.exr").layers)
+        for (const Color& pixel : layer.pixels) EXPECT_EQ(pixel, Color(0.0f));
+}
+
 TEST_F(ProgramMistakes, MessagesAreOneLineThatATerminalCanShow) {
     const std::string bell = "<scene>\n<shape type='\x1b[31mred &#10;\x07'/></scene>";
     const std::string message = refusal_of("info '" + folder_.write("bell.xml", bell).filename().string() + "'");
