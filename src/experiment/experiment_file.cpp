@@ -56,27 +56,29 @@ void sort_unique(std::vector<std::uint64_t>& values) {
 }
 
 /// Refuses letters beyond ASCII outside of quotes and comments, where TOML has no place for them and toml++ 3.3 calls
-/// what it then does unreachable. Text in triple quotes goes over lines and is left to toml++.
+/// what it then does unreachable.
 void require_ascii_keys(std::string_view text, const std::string& file) {
-    if (text.find("\"\"\"") != text.npos || text.find("'''") != text.npos) return;
     if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // a byte order mark
     std::size_t line = 1;
-    char quote = 0;  // which text or comment is open
+    std::string_view open;  // the quotes around here, or the comment's sign
     for (std::size_t i = 0; i < text.size(); ++i) {
         const char c = text[i];
         if (c == '\n') {
             ++line;
-            quote = 0;
-        } else if (quote != 0) {
-            if (c == '\\' && quote == '"')
-                ++i;
-            else if (c == quote && quote != '#')
-                quote = 0;
-        } else if (c == '"' || c == '\'' || c == '#') {
-            quote = c;
-        } else if (static_cast<unsigned char>(c) >= 0x80) {
-            throw InputError(fmt::format("{}:{}", file, line),
-                             "expected letters beyond ASCII only in quotes and comments");
+            if (open.size() == 1) open = {};
+        } else if (open.empty()) {
+            if (static_cast<unsigned char>(c) >= 0x80)
+                throw InputError(fmt::format("{}:{}", file, line),
+                                 "expected letters beyond ASCII only in quotes and comments");
+            if (c != '"' && c != '\'' && c != '#') continue;
+            const bool is_triple = c != '#' && text.substr(i + 1, 2) == std::string(2, c);
+            open = text.substr(i, is_triple ? 3 : 1);
+            i += open.size() - 1;
+        } else if (c == '\\' && open[0] == '"') {
+            if (i + 1 < text.size() && text[i + 1] != '\n') ++i;
+        } else if (open != "#" && text.substr(i, open.size()) == open) {
+            i += open.size() - 1;
+            open = {};
         }
     }
 }

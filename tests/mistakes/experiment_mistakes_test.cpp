@@ -24,6 +24,10 @@ TEST(ExperimentMistakes, FilesThatAreNoTextOrTooLargeAreRefused) {
     EXPECT_EQ(message("\xef\xbb\xbf" + good), "no error") << "a byte order mark";
     EXPECT_EQ(message("scenes = [\"lamp.xml\"]\r\npasses = 1\r\n[[method]]\r\nintegrator = \"ppm\"\r\n"), "no error");
     EXPECT_EQ(message(""), "a.toml: passes is missing: how many passes each run has");
+    for (const std::string title : {R"("größ\"er")", R"('größ\')", "\"\"\"gr\n\"ö\"\n\"\"\"", "'''\nö'''"})
+        EXPECT_EQ(message("title = " + title + " # ö\n" + good), "no error") << title;
+    EXPECT_EQ(message("title = \"\"\"\n\"\"\" ö\n" + good),
+              "a.toml:2: expected letters beyond ASCII only in quotes and comments");
     EXPECT_EQ(message("# a\xdf\n").substr(0, 9), "a.toml:1:");
     EXPECT_EQ(message(good + std::string(1, '\0')).substr(0, 9), "a.toml:5:");
     EXPECT_EQ(message(std::string((1 << 24) + 1, '#')), "a.toml: expected at most 16777216 bytes, got 16777217");
