@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <string>
@@ -58,6 +61,9 @@ int run_program(int argc, char** argv) {
         if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
         return report(error.what(), bad_input);
     }
+    // What was printed may still be on its way to a full disk.
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+        return report("standard output: cannot be written: " + std::string(std::strerror(errno)), bad_input);
     return 0;
 }
 

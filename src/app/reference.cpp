@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "app/commands.h"
+#include "app/interruption.h"
 #include "app/options.h"
 #include "experiment/experiment_file.h"
 #include "experiment/progress.h"
@@ -29,9 +30,13 @@ void make_reference(ReferenceOptions options) {
     const Scene scene = build_scene(load_scene_file(options.settings.scene_file), resolution);
     options.settings.max_depth = options.max_depth.value_or(scene.max_depth);
 
+    listen_for_interruptions();
+    options.settings.is_interrupted = is_interrupted;
+    std::uint64_t samples_left = 0;
     Progress progress(2 * options.settings.samples);
     const Json json =
         add_reference_samples(scene, options.settings, options.output, [&](std::uint64_t done, std::uint64_t total) {
+            samples_left = (total - done) / 2;
             progress.show(done, fmt::format("sample {} of {}, both halves; saved about every {:.0f} s", done, total,
                                             options.settings.seconds_between_saves));
         });
@@ -42,6 +47,8 @@ void make_reference(ReferenceOptions options) {
     for (const auto& [component, floor] : json.at("floor_mse").items())
         if (floor.is_number()) fmt::print("noise floor (MSE) of {:<9} {:.6g}\n", component, floor.get<double>());
     fmt::print("wrote {}\n", (options.output / "reference.json").string());
+    if (samples_left > 0)
+        throw Interrupted(fmt::format("interrupted, and saved; --samples {} adds the rest", samples_left));
 }
 
 }  // namespace

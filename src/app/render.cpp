@@ -10,6 +10,7 @@
 #include "app/commands.h"
 #include "app/interruption.h"
 #include "app/options.h"
+#include "core/file_lock.h"
 #include "core/files.h"
 #include "core/hash.h"
 #include "experiment/checkpoint.h"
@@ -129,6 +130,11 @@ void render(const RenderOptions& options) {
     for (const std::string& file : {options.csv, options.png, options.checkpoint})
         if (!file.empty()) require_writable(file);
 
+    const auto pixels =
+        static_cast<std::uint64_t>(scene.camera.width) * static_cast<std::uint64_t>(scene.camera.height);
+    require_space(options.output.parent_path(), 4 * sizeof(Color) * pixels * (1 + snapshots.size()),
+                  "what this render writes");
+
     const std::vector<std::uint64_t> recorded =
         options.csv.empty() ? std::vector{options.passes} : powers_of_two(options.passes);
     std::set_union(recorded.begin(), recorded.end(), snapshots.begin(), snapshots.end(),
@@ -148,6 +154,9 @@ void render(const RenderOptions& options) {
     std::optional<Recorder> recorder;
     if (!options.csv.empty()) recorder.emplace(identity, judge_by, options.csv);
 
+    const auto lock = options.checkpoint.empty() ? std::nullopt : FileLock::try_lock(options.checkpoint + ".lock");
+    if (!options.checkpoint.empty() && !lock)
+        throw InputError(options.checkpoint, "another process is rendering with this checkpoint");
     const Checkpoint checkpoint = checkpoint_of(options, identity, scene, judge_by, recorded);
     const auto state_of = [&](const StateExchange& method) {
         return [&](StateArchive& archive) {
@@ -199,7 +208,7 @@ void render(const RenderOptions& options) {
                                       options.checkpoint.empty()
                                           ? "nothing is saved without --checkpoint FILE"
                                           : options.checkpoint + " is saved, and --resume goes on from it"));
-    if (!options.checkpoint.empty()) std::filesystem::remove(options.checkpoint);
+    if (!options.checkpoint.empty()) discard(checkpoint);
 
     print_summary(shown, settings, scene, hit_points.points.size(), errors);
     for (const std::string& reason : why_images_are_plain(scene, hit_points)) fmt::print("note        {}\n", reason);

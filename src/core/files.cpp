@@ -1,6 +1,7 @@
 #include "core/files.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -146,10 +147,23 @@ void AppendedFile::exchange(StateArchive& archive) {
 
 void require_writable(const std::filesystem::path& file) {
     if (std::filesystem::is_directory(file)) throw InputError(file.string(), "expected a file, this is a folder");
+    if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file))
+        throw InputError(file.string(), "expected a file, this is a device or a pipe, which cannot be replaced");
     make_folder(file.parent_path());
     const TemporaryFile temporary(file);
     if (!std::ofstream(temporary.path()))
         throw InputError(file.string(), std::string("cannot be written: ") + std::strerror(errno));
+}
+
+void require_space(const std::filesystem::path& folder, std::uint64_t bytes, const std::string& what) {
+    make_folder(folder);
+    std::error_code error;
+    const std::filesystem::space_info space = std::filesystem::space(folder.empty() ? "." : folder, error);
+    if (error || bytes <= space.available) return;
+    constexpr double mebibyte = 1024.0 * 1024.0;
+    throw InputError(folder.string(), fmt::format("{} can take {:.1f} MiB, and {:.1f} MiB are free there", what,
+                                                  static_cast<double>(bytes) / mebibyte,
+                                                  static_cast<double>(space.available) / mebibyte));
 }
 
 }  // namespace photonlab

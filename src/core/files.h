@@ -32,6 +32,9 @@ void make_folder(const std::filesystem::path& folder);
 /// is to go there.
 void require_writable(const std::filesystem::path& file);
 
+/// Throws InputError when `what` can take more bytes than are free on the folder's file system.
+void require_space(const std::filesystem::path& folder, std::uint64_t bytes, const std::string& what);
+
 /// A file that grows by whole pieces: of one that finds no room, nothing stays.
 class AppendedFile {
 public:

@@ -4,53 +4,31 @@
 
 #pragma once
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <string>
-#include <system_error>
-
-#include "core/error.h"
 
 namespace photonlab {
 
 class TemporaryFile {
 public:
-    explicit TemporaryFile(const std::filesystem::path& final_name)
-        : final_name_(final_name), path_(final_name.string() + ".partial-" + std::to_string(::getpid())) {}
-
+    /// Removes what processes that were killed left of the same file.
+    explicit TemporaryFile(const std::filesystem::path& final_name);
+    ~TemporaryFile();
     TemporaryFile(const TemporaryFile&) = delete;
     TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-    ~TemporaryFile() {
-        std::error_code ignored;
-        if (!renamed_) std::filesystem::remove(path_, ignored);
-    }
 
     /// Where to write until `rename`.
     const std::filesystem::path& path() const { return path_; }
 
     /// Gives the complete file its final name, in place of a file that had it. Throws InputError.
-    void rename() {
-        const int descriptor = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
-        const bool is_on_disk = descriptor >= 0 && ::fsync(descriptor) == 0;
-        const int reason = errno;
-        if (descriptor >= 0) ::close(descriptor);
-        if (!is_on_disk)
-            throw InputError(final_name_.string(), std::string("cannot be written: ") + std::strerror(reason));
-        std::error_code error;
-        std::filesystem::rename(path_, final_name_, error);
-        if (error) throw InputError(final_name_.string(), "cannot be written: " + error.message());
-        renamed_ = true;
-    }
+    void rename();
 
 private:
     std::filesystem::path final_name_;
     std::filesystem::path path_;
     bool renamed_ = false;
 };
+
+/// Removes what processes that were killed left of a file under its temporary names.
+void remove_leftovers(const std::filesystem::path& final_name);
 
 }  // namespace photonlab

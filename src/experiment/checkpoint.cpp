@@ -113,6 +113,11 @@ void save(const Checkpoint& checkpoint, const StateExchange& state) {
     temporary.rename();
 }
 
+void discard(const Checkpoint& checkpoint) {
+    std::filesystem::remove(checkpoint.file);
+    remove_leftovers(checkpoint.file);
+}
+
 bool CheckpointClock::is_due_after_pass() {
     const Clock::time_point now = Clock::now();
     const auto seconds_since = [&](Clock::time_point then) {

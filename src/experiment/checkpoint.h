@@ -37,6 +37,9 @@ bool is_usable(const Checkpoint& checkpoint);
 void load_checkpoint(std::istream& stream, const std::string& place, const Checkpoint& checkpoint,
                      const StateExchange& state);
 
+/// Removes the file of a run that is finished, and what killed processes left beside it.
+void discard(const Checkpoint& checkpoint);
+
 /// Says when it is time to save, so that no more work is lost than that of so many seconds, or of one pass.
 class CheckpointClock {
 public:

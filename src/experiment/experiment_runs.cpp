@@ -4,9 +4,12 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <chrono>
 #include <map>
 #include <set>
+#include <thread>
 
+#include "core/file_lock.h"
 #include "core/files.h"
 #include "core/hash.h"
 #include "experiment/progress.h"
@@ -66,6 +69,12 @@ bool is_finished(const std::filesystem::path& folder, const std::string& key) {
     const auto finished = json.find("finished");
     const auto stored = json.find("key");
     return finished != json.end() && *finished == true && stored != json.end() && *stored == key;
+}
+
+/// The same, and that the ensemble has the run's images.
+bool is_made(const Experiment& experiment, const PreparedRun& run, const std::filesystem::path& results) {
+    return is_finished(run.folder, run.key) &&
+           (!experiment.decomposition || ensemble_of(experiment, run, results).contains(run.run->seed));
 }
 
 ReferenceSubject subject_of(const Scene& scene, int samples_per_pixel, int max_depth) {
@@ -131,6 +140,85 @@ std::vector<std::vector<const PreparedRun*>> runs_together(const std::vector<Pre
     return groups;
 }
 
+/// Runs of a group that this process may make, while their locks are held.
+struct LockedRuns {
+    std::vector<const PreparedRun*> runs;
+    std::vector<FileLock> locks;
+    std::vector<const PreparedRun*> of_others;
+};
+
+LockedRuns lock_runs(const std::vector<const PreparedRun*>& group) {
+    LockedRuns locked;
+    for (const PreparedRun* run : group) {
+        if (auto lock = FileLock::try_lock(run->folder / "lock")) {
+            locked.locks.push_back(std::move(*lock));
+            locked.runs.push_back(run);
+        } else {
+            locked.of_others.push_back(run);
+        }
+    }
+    return locked;
+}
+
+/// Most that runs which are not finished add to the disk: images are counted without their compression.
+std::uint64_t bytes_on_disk(const Experiment& experiment, const PreparedExperiment& prepared,
+                            const std::vector<std::vector<const PreparedRun*>>& groups) {
+    std::uint64_t bytes = 0;
+    std::uint64_t largest_group = 0;
+    std::map<std::string, std::size_t> slots;  // by point
+    for (const auto& group : groups) {
+        std::uint64_t checkpoints = 0;
+        for (const PreparedRun* run : group) {
+            const Camera& camera = prepared.scenes[run->run->scene]->camera;
+            const std::uint64_t layer =
+                sizeof(Color) * static_cast<std::uint64_t>(camera.width) * static_cast<std::uint64_t>(camera.height);
+            const std::uint64_t recorded = run->run->plan.recorded.size();
+            bytes += 4 * layer * run->run->plan.snapshots.size();
+            if (experiment.decomposition && slots[run->run->point]++ < ensemble_slots)
+                bytes += layer * (2 + 2 * recorded);
+            // Statistics at hit points, of which there is one at least a pixel where there is anything.
+            checkpoints += layer * (6 + (experiment.decomposition ? 3 * recorded : 0));
+        }
+        largest_group = std::max(largest_group, checkpoints);
+    }
+    return bytes + largest_group;
+}
+
+/// The hit points and the reference of the runs at hand, kept as long as the next ones want the same.
+class GroupSurroundings {
+public:
+    GroupSurroundings(const Experiment& experiment, const PreparedExperiment& prepared)
+        : experiment_(experiment), prepared_(prepared) {}
+
+    void move_to(const PreparedRun& run) {
+        const std::size_t scene_index = run.run->scene;
+        const SceneEntry& entry = experiment_.scenes[scene_index];
+        const Scene& scene = *prepared_.scenes[scene_index];
+        const int max_depth = run.settings.method.max_depth;
+        const double cutoff = run.settings.method.branch_cutoff;
+        if (scene_ != scene_index) reference_.reset();
+        if (scene_ != scene_index || cutoff_ != cutoff)
+            hit_points_ = trace_hit_points(scene, experiment_.samples_per_pixel, experiment_.threads, cutoff);
+        if (entry.reference && (!reference_ || depth_ != max_depth))
+            reference_ = load_reference(*entry.reference, subject_of(scene, experiment_.samples_per_pixel, max_depth));
+        scene_ = scene_index;
+        cutoff_ = cutoff;
+        depth_ = max_depth;
+    }
+
+    const HitPoints& hit_points() const { return hit_points_; }
+    const Reference* reference() const { return reference_ ? &*reference_ : nullptr; }
+
+private:
+    const Experiment& experiment_;
+    const PreparedExperiment& prepared_;
+    HitPoints hit_points_;
+    std::optional<Reference> reference_;
+    std::optional<std::size_t> scene_;
+    double cutoff_ = 0.0;
+    int depth_ = -1;
+};
+
 }  // namespace
 
 PreparedExperiment prepare_experiment(const Experiment& experiment, const std::filesystem::path& results,
@@ -165,8 +253,7 @@ PreparedExperiment prepare_experiment(const Experiment& experiment, const std::f
         ready.point_key = point_key(experiment, *run, ready.settings, *scene, reference_key);
         ready.key = hash_text(fmt::format("{} {} {}", ready.point_key, run->seed, Json(run->plan.snapshots).dump()));
         ready.folder = results / "runs" / run->name;
-        ready.finished = is_finished(ready.folder, ready.key) &&
-                         (!experiment.decomposition || ensemble_of(experiment, ready, results).contains(run->seed));
+        ready.finished = is_made(experiment, ready, results);
         prepared.runs.push_back(std::move(ready));
     }
     return prepared;
@@ -177,50 +264,68 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
     ExperimentOutcome outcome;
     outcome.records = results / "iterations.csv";
     require_writable(outcome.records);
-    if (!options.fresh)
-        for (const PreparedRun& ready : prepared.runs)
-            if (!ready.finished) is_usable(checkpoint_of(experiment, ready));
+    for (const PreparedRun& ready : prepared.runs) {
+        const Checkpoint checkpoint = checkpoint_of(experiment, ready);
+        if (ready.finished) {  // perhaps by a process that was killed before it had cleared up
+            discard(checkpoint);
+            if (std::filesystem::exists(ready.folder / "lock")) FileLock::try_lock(ready.folder / "lock");
+        } else if (!options.fresh) {
+            is_usable(checkpoint);
+        }
+    }
 
-    const std::vector<std::vector<const PreparedRun*>> groups = runs_together(prepared.runs);
+    std::vector<std::vector<const PreparedRun*>> groups = runs_together(prepared.runs);
+    require_space(results, bytes_on_disk(experiment, prepared, groups),
+                  "what this experiment still writes (snapshots, sums over seeds, checkpoints)");
     for (const PreparedRun& ready : prepared.runs) outcome.skipped += ready.finished;
     std::uint64_t passes = 0;
     for (const auto& group : groups) passes += group[0]->settings.passes;
     Progress progress(passes);
     std::uint64_t passes_before = 0;
-    std::optional<std::size_t> current_scene;
-    double current_cutoff = 0.0;
-    std::optional<HitPoints> hit_points;
-    std::optional<Reference> reference;
-    int reference_depth = -1;
-    for (std::size_t i = 0; i < groups.size(); ++i) {
-        const PreparedRun& first = *groups[i].at(0);
-        const SceneEntry& entry = experiment.scenes[first.run->scene];
-        const Scene& scene = *prepared.scenes[first.run->scene];
-        const int max_depth = first.settings.method.max_depth;
-        const double cutoff = first.settings.method.branch_cutoff;
-        if (current_scene != first.run->scene) reference.reset();
-        if (current_scene != first.run->scene || current_cutoff != cutoff)
-            hit_points = trace_hit_points(scene, experiment.samples_per_pixel, experiment.threads, cutoff);
-        if (current_scene != first.run->scene)
-            for (const std::string& reason : why_images_are_plain(scene, *hit_points))
-                progress.finished(entry.name + ": " + reason);
-        if (entry.reference && (!reference || reference_depth != max_depth))
-            reference = load_reference(*entry.reference, subject_of(scene, experiment.samples_per_pixel, max_depth));
-        current_scene = first.run->scene;
-        current_cutoff = cutoff;
-        reference_depth = max_depth;
+    GroupSurroundings surroundings(experiment, prepared);
+    const std::size_t group_count = groups.size();
+    // What another process is making is asked for again, until all is made: it may end without finishing.
+    while (!groups.empty() && !outcome.is_interrupted) {
+        std::vector<std::vector<const PreparedRun*>> of_others;
+        bool is_anything_done = false;
+        for (const auto& group : groups) {
+            LockedRuns locked = lock_runs(group);
+            if (!locked.of_others.empty()) of_others.push_back(locked.of_others);
+            const auto first_made =
+                std::stable_partition(locked.runs.begin(), locked.runs.end(),
+                                      [&](const PreparedRun* run) { return !is_made(experiment, *run, results); });
+            const auto made_by_others = static_cast<std::size_t>(locked.runs.end() - first_made);
+            std::for_each(first_made, locked.runs.end(),
+                          [&](const PreparedRun* run) { discard(checkpoint_of(experiment, *run)); });
+            outcome.skipped += made_by_others;
+            is_anything_done = is_anything_done || !locked.runs.empty();
+            locked.runs.erase(first_made, locked.runs.end());
+            if (locked.runs.empty()) {
+                if (locked.of_others.empty()) passes_before += group[0]->settings.passes;
+                continue;
+            }
 
-        const std::string others = groups[i].size() > 1 ? fmt::format(" and {} more", groups[i].size() - 1) : "";
-        const std::string counted = fmt::format("{} of {}: {}{}", i + 1, groups.size(), first.run->name, others);
-        progress.show(passes_before, counted);
-        const GroupOutcome made =
-            run_group({experiment, scene, *hit_points, reference ? &*reference : nullptr, results, groups[i]}, options,
-                      [&](std::uint64_t pass) { progress.show(passes_before + pass, counted); });
-        outcome.is_interrupted = !made.is_finished;
-        if (outcome.is_interrupted) break;
-        passes_before += first.settings.passes;
-        outcome.ran += groups[i].size();
-        progress.finished(made.summary);
+            const PreparedRun& first = *locked.runs[0];
+            surroundings.move_to(first);
+            const std::string others =
+                locked.runs.size() > 1 ? fmt::format(" and {} more", locked.runs.size() - 1) : "";
+            const std::string counted = fmt::format("{}{}, one of {} groups", first.run->name, others, group_count);
+            progress.show(passes_before, counted);
+            const GroupOutcome made =
+                run_group({experiment, *prepared.scenes[first.run->scene], surroundings.hit_points(),
+                           surroundings.reference(), results, locked.runs},
+                          options, [&](std::uint64_t pass) { progress.show(passes_before + pass, counted); });
+            outcome.is_interrupted = !made.is_finished;
+            if (outcome.is_interrupted) break;
+            if (locked.of_others.empty()) passes_before += first.settings.passes;
+            outcome.ran += locked.runs.size();
+            progress.finished(made.summary);
+        }
+        groups = std::move(of_others);
+        if (groups.empty() || is_anything_done || outcome.is_interrupted) continue;
+        progress.show(passes_before, "waiting for runs that another process is making");
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        outcome.is_interrupted = options.is_interrupted();
     }
     progress.clear();
     if (experiment.decomposition)
@@ -231,6 +336,7 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
     const bool is_all = prepared.runs.size() == experiment.runs.size();
     const PreparedExperiment all = is_all ? PreparedExperiment{} : prepare_experiment(experiment, results);
     for (const PreparedRun& ready : is_all ? prepared.runs : all.runs) keys[ready.run->name] = ready.key;
+    const FileLock lock = FileLock::wait_for(results / "lock");
     outcome.merged = merge_records(experiment, results, keys);
     return outcome;
 }

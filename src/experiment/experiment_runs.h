@@ -11,6 +11,9 @@
 //
 // A finished run is recognised by its key: a hash of its settings, scene, reference and the program's version. One
 // whose key differs from what the experiment asks for now is made again from the start.
+//
+// Several processes can work on one results folder: each locks the runs that it makes, leaves those of others alone,
+// and waits for them at the end.
 
 #pragma once
 
@@ -37,7 +40,7 @@ PreparedExperiment prepare_experiment(const Experiment& experiment, const std::f
 
 struct ExperimentOutcome {
     std::size_t ran = 0;
-    std::size_t skipped = 0;        ///< were finished already
+    std::size_t skipped = 0;        ///< were finished already, or by another process
     std::filesystem::path records;  ///< the merged iterations.csv
     std::size_t merged = 0;         ///< runs in it
     bool is_interrupted = false;    ///< what was running is saved

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "core/error.h"
+#include "core/file_lock.h"
 #include "core/files.h"
 #include "core/hash.h"
 #include "experiment/version.h"
@@ -198,6 +199,8 @@ Json add_reference_samples(const Scene& scene, const ReferenceSettings& settings
     const MethodSettings method = method_of(settings);
     const bool is_unbiased = method.integrator == "path";
     require_writable(folder / "reference.json");
+    const auto lock = FileLock::try_lock(folder / "lock");
+    if (!lock) throw InputError(folder.string(), "another process is adding samples to this reference");
     const double seconds_before = stored_seconds(folder);
 
     const HitPoints hit_points = trace_hit_points(scene, settings.samples_per_pixel, settings.threads);
@@ -247,18 +250,21 @@ Json add_reference_samples(const Scene& scene, const ReferenceSettings& settings
     const std::uint64_t before = half_a.samples() + half_b.samples();
     const std::uint64_t to_do = 2 * target - before;
     auto saved = began;
-    while (half_a.samples() < target || half_b.samples() < target) {
+    bool is_interrupted = false;
+    while (!is_interrupted && (half_a.samples() < target || half_b.samples() < target)) {
         GrowingHalf& lagging = half_b.samples() < half_a.samples() ? half_b : half_a;
         lagging.add_sample();
         on_sample(half_a.samples() + half_b.samples() - before, to_do);
         const auto now = std::chrono::steady_clock::now();
         const bool is_time = std::chrono::duration<double>(now - saved).count() >= settings.seconds_between_saves;
-        if (is_time && half_a.samples() == half_b.samples()) {
+        if (half_a.samples() != half_b.samples()) continue;
+        is_interrupted = settings.is_interrupted();
+        if (is_time && !is_interrupted) {
             save(false);
             saved = std::chrono::steady_clock::now();
         }
     }
-    save(settings.picture_only);
+    save(settings.picture_only && !is_interrupted);
     return json;
 }
 

@@ -38,13 +38,14 @@ struct ReferenceSettings {
     int threads = 1;
     double seconds_between_saves = 30.0;
     bool picture_only = false;  ///< store the sum of the layers alone, a third of the size; nothing can be added to it
+    std::function<bool()> is_interrupted = [] { return false; };  ///< true: end, and save, with fewer samples
 };
 
 /// Called after every sample of a half: how many of how many are done.
 using SampleListener = std::function<void(std::uint64_t done, std::uint64_t total)>;
 
 /// Adds samples to what is in `folder`. Throws InputError when that is a reference of something else, or of another
-/// seed. Returns what reference.json now says.
+/// seed, or when another process is adding to it. Returns what reference.json now says.
 Json add_reference_samples(
     const Scene& scene, const ReferenceSettings& settings, const std::filesystem::path& folder,
     const SampleListener& on_sample = [](std::uint64_t, std::uint64_t) {});

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <optional>
 
+#include "core/file_lock.h"
 #include "core/files.h"
 #include "experiment/progress.h"
 #include "experiment/recorder.h"
@@ -112,12 +113,14 @@ OpenRun open_run(const RunGroup& group, const PreparedRun& prepared) {
 std::string finish(const RunGroup& group, OpenRun& run, const RunState& last) {
     const std::filesystem::path& folder = run.prepared->folder;
     if (!run.probes.empty()) write_text_file(folder / "probes.csv", probes_header + "\n" + run.probes);
-    if (group.experiment.decomposition)
+    if (group.experiment.decomposition) {
+        const FileLock lock = FileLock::wait_for(group.results / "ensembles" / (run.prepared->run->point + ".lock"));
         ensemble_of(group.experiment, *run.prepared, group.results).add(run.prepared->run->seed, run.recorded_images);
+    }
     write_text_file(
         folder / "run.json",
         run_json(run.record, run.recorder, last, group.scene, group.hit_points, group.reference).dump(2) + "\n");
-    std::filesystem::remove(run.checkpoint.file);
+    discard(run.checkpoint);
 
     std::string line = fmt::format("finished {} in {}", run.prepared->run->name, describe_duration(last.times.total()));
     if (run.recorder.last_total_errors()) line += fmt::format(", rmse {:.4g}", run.recorder.last_total_errors()->rmse);

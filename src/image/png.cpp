@@ -1,11 +1,28 @@
 #include "image/png.h"
 
+#include <algorithm>
 #include <cassert>
+#include <fstream>
+#include <iterator>
 
+#include "core/error.h"
 #include "core/temporary_file.h"
 #include "image/image_codecs.h"
 
 namespace photonlab {
+
+namespace {
+
+/// True when the file ends as a PNG does: OpenImageIO does not say that the disk was full.
+bool has_end(const std::filesystem::path& file) {
+    static constexpr char end[] = {0, 0, 0, 0, 'I', 'E', 'N', 'D', '\xae', '\x42', '\x60', '\x82'};
+    char found[sizeof(end)] = {};
+    std::ifstream stream(file, std::ios::binary);
+    stream.seekg(-static_cast<std::streamoff>(sizeof(end)), std::ios::end);
+    return stream.read(found, sizeof(found)) && std::equal(std::begin(end), std::end(end), std::begin(found));
+}
+
+}  // namespace
 
 std::uint8_t srgb_byte(double linear) {
     if (!(linear > 0.0)) return 0;  // NaN, too
@@ -31,6 +48,7 @@ void write_png(const std::filesystem::path& file, int width, int height, const s
 
     TemporaryFile temporary(file);
     image_codecs().write_png(temporary.path(), file, width, height, bytes);
+    if (!has_end(temporary.path())) throw InputError(file.string(), "cannot be written wholly: is the disk full?");
     temporary.rename();
 }
 
