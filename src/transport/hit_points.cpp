@@ -13,7 +13,7 @@ namespace {
 
 constexpr int tile_size = 16;  // pixels; hit points of a tile stay together in the list
 
-constexpr std::size_t tiles_per_round = 64;  // traced, then joined: their memory is reused
+constexpr std::size_t tiles_per_round = 16;  // traced, then joined: their memory is reused
 
 struct Tile {
     HitPointList points;
