@@ -101,7 +101,7 @@ std::optional<ErrorMetrics> judge(const Image& image, const Reference& reference
     const auto reference_component = [&](const Image& half) {
         std::vector<ColorD> pixels = component_pixels(half, component);
         if (photons_carry_direct && component == gathered_layer && !pixels.empty()) {
-            const std::vector<ColorD> direct = component_pixels(half, direct_layer);
+            std::vector<ColorD> direct = component_pixels(half, direct_layer);
             if (direct.empty()) return direct;
             for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] += direct[i];
         }

@@ -269,7 +269,7 @@ std::vector<RunState> run_methods(const Scene& scene, const HitPoints& hit_point
     std::vector<RunState> last;
     for (RunningMethod& method : methods) {
         method.state.report = method.integrator->report();
-        last.push_back(std::move(method.state));
+        last.push_back(method.state);
     }
     return last;
 }

@@ -209,8 +209,11 @@ HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int thread
             const int x = left + every_second_bit(place);
             const int y = top + every_second_bit(place >> 1);
             if (x >= camera.width || y >= camera.height) continue;
-            for (int sample = 0; sample < samples_per_pixel; ++sample)
-                trace_sample(x, y, x + (sample % grid + 0.5) / grid, y + (sample / grid + 0.5) / grid, tile);
+            for (int sample = 0; sample < samples_per_pixel; ++sample) {
+                const int column = sample % grid;
+                const int row = sample / grid;
+                trace_sample(x, y, x + (column + 0.5) / grid, y + (row + 0.5) / grid, tile);
+            }
         }
     };
 
