@@ -15,6 +15,7 @@
 #include "core/hash.h"
 #include "experiment/checkpoint.h"
 #include "experiment/experiment_file.h"
+#include "experiment/memory.h"
 #include "experiment/progress.h"
 #include "experiment/recorder.h"
 #include "experiment/reference.h"
@@ -139,6 +140,10 @@ void render(const RenderOptions& options) {
         options.csv.empty() ? std::vector{options.passes} : powers_of_two(options.passes);
     std::set_union(recorded.begin(), recorded.end(), snapshots.begin(), snapshots.end(),
                    std::back_inserter(settings.estimated));
+
+    const MemoryEstimate memory = estimate_memory(scene, options.samples_per_pixel, {settings}, 0);
+    require_memory(options.scene.string(), memory);
+    fmt::print("memory      {}\n", describe(memory));
 
     const HitPoints hit_points =
         trace_hit_points(scene, options.samples_per_pixel, options.threads, settings.method.branch_cutoff);

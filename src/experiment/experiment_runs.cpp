@@ -12,6 +12,7 @@
 #include "core/file_lock.h"
 #include "core/files.h"
 #include "core/hash.h"
+#include "experiment/memory.h"
 #include "experiment/progress.h"
 #include "experiment/recorder.h"
 #include "experiment/reference.h"
@@ -184,6 +185,33 @@ std::uint64_t bytes_on_disk(const Experiment& experiment, const PreparedExperime
     return bytes + largest_group;
 }
 
+/// Says how much memory the largest group takes; throws InputError when that is not there. Seeds do not change it.
+void require_memory_for(const Experiment& experiment, const PreparedExperiment& prepared,
+                        const std::vector<std::vector<const PreparedRun*>>& groups) {
+    MemoryEstimate most;
+    const PreparedRun* largest = nullptr;
+    std::set<std::string> known;
+    for (const auto& group : groups) {
+        std::vector<RunSettings> settings;
+        std::string points;
+        for (const PreparedRun* run : group) {
+            settings.push_back(run->settings);
+            points += run->run->point + "\n";
+        }
+        if (!known.insert(points).second) continue;
+        const PassPlan& plan = group[0]->run->plan;
+        const MemoryEstimate estimate =
+            estimate_memory(*prepared.scenes[group[0]->run->scene], experiment.samples_per_pixel, settings,
+                            experiment.decomposition ? plan.recorded.size() : 0);
+        if (largest && estimate.total() <= most.total()) continue;
+        most = estimate;
+        largest = group[0];
+    }
+    if (!largest) return;
+    require_memory(largest->run->name, most);
+    fmt::print(stderr, "memory: {}\n", describe(most));
+}
+
 /// The hit points and the reference of the runs at hand, kept as long as the next ones want the same.
 class GroupSurroundings {
 public:
@@ -277,6 +305,7 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
     std::vector<std::vector<const PreparedRun*>> groups = runs_together(prepared.runs);
     require_space(results, bytes_on_disk(experiment, prepared, groups),
                   "what this experiment still writes (snapshots, sums over seeds, checkpoints)");
+    require_memory_for(experiment, prepared, groups);
     for (const PreparedRun& ready : prepared.runs) outcome.skipped += ready.finished;
     std::uint64_t passes = 0;
     for (const auto& group : groups) passes += group[0]->settings.passes;

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "scene/emitter.h"
+#include "transport/coarse_hit_points.h"
 
 namespace photonlab {
 
@@ -123,11 +124,15 @@ std::uint64_t HitPointList::bytes() const {
 }
 
 HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int threads, double branch_cutoff) {
+    return trace_hit_points(scene, scene.camera, samples_per_pixel, threads, branch_cutoff);
+}
+
+HitPoints trace_hit_points(const Scene& scene, const Camera& camera, int samples_per_pixel, int threads,
+                           double branch_cutoff) {
     constexpr std::size_t material_limit = std::size_t{1} << 16;  // HitPoint::material
     if (scene.materials.size() > material_limit)
         throw InputError("expected at most " + std::to_string(material_limit) + " materials in a scene, got " +
                          std::to_string(scene.materials.size()));
-    const Camera& camera = scene.camera;
     const int grid = grid_size(samples_per_pixel);
     const float smallest_weight = static_cast<float>(branch_cutoff);
     const float share = 1.0f / static_cast<float>(samples_per_pixel);

@@ -107,6 +107,23 @@ TEST_F(NoRoom, AFolderThatVanishesIsNamed) {
         << program.messages();
 }
 
+TEST_F(NoRoom, InMemoryIsRefusedWithTheNumbers) {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "AddressSanitizer wants more addresses than any limit leaves";
+#endif
+    std::string said;
+    EXPECT_EQ(run_program({"render", (folder_ / "walls/scene.xml").string(), "-o", (folder_ / "large.exr").string(),
+                           "--resolution", "4096x4096"},
+                          said, {.address_bytes = 600'000'000}),
+              2);
+    EXPECT_NE(said.find("scene.xml: does not fit into memory: it needs up to "), std::string::npos) << said;
+    EXPECT_EQ(run_program({"render", (folder_ / "walls/scene.xml").string(), "-o", (folder_ / "large.exr").string(),
+                           "--photons", "4000000000"},
+                          said, {.address_bytes = 600'000'000}),
+              2);
+    EXPECT_NE(said.find("scene.xml: does not fit into memory: it needs up to "), std::string::npos) << said;
+}
+
 // A file system of 300 KiB; only root can make one.
 TEST_F(NoRoom, OnAFileSystemIsFoundBeforehandOrNamesTheFile) {
     std::filesystem::create_directories(folder_ / "small");
