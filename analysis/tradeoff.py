@@ -34,9 +34,9 @@ except ImportError as error:
 
 DEFAULT = "default"
 # A setting that follows from others: it is no knob where one of them has been turned.
-FOLLOWS = {"radius_rule": ["radius_initial"], "caustic_radius": ["radius_initial"], "caustic_max_radius": ["max_radius"],
-           "hit_points": ["samples_per_pixel", "width", "height", "branch_cutoff"],
-           "radius_initial": ["samples_per_pixel", "width", "height", "branch_cutoff"]}
+FOLLOWS = {"radius_rule": ["radius_initial"], "caustic_radius": ["radius_initial", "footprints"],
+           "caustic_max_radius": ["max_radius"], "hit_points": ["samples_per_pixel", "width", "height", "branch_cutoff"],
+           "radius_initial": ["footprints", "samples_per_pixel", "width", "height", "branch_cutoff"]}
 CLOCKS = {"seconds": "s", "cpu_seconds": "CPU s"}
 RATIOS = ["error", "time"]
 COLUMNS = ["scene", "point", "default", "knob", "value", "default_value", "seeds", "pass", "rmse", "rmse_error", "seconds", "seconds_error",

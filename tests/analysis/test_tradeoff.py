@@ -122,9 +122,12 @@ class Tradeoff(unittest.TestCase):
         self.write({"default": ({}, self.noisy(4e-4, 0.1), self.noisy(2.0, 0.05)),
                     "given": ({"radius_rule": "given", "radius_initial": "4", "caustic_radius": "4"}, self.noisy(4e-4, 0.1),
                               self.noisy(2.0, 0.05)),
+                    "footprints": ({"footprints": "2", "radius_initial": "8", "caustic_radius": "8"}, self.noisy(4e-4, 0.1),
+                                   self.noisy(2.0, 0.05)),
                     "samples": ({"samples_per_pixel": "4", "hit_points": "12288"}, self.noisy(4e-4, 0.1), self.noisy(2.0, 0.05))})
         table, words, _ = self.tables()
-        self.assertEqual((table["given"]["knob"], table["samples"]["knob"]), ("radius_initial", "samples_per_pixel"))
+        self.assertEqual([table[name]["knob"] for name in ["given", "footprints", "samples"]],
+                         ["radius_initial", "footprints", "samples_per_pixel"])
         self.assertIn("initial radius 4 for 12.35", words)
 
     def test_an_error_that_is_not_resolved_has_no_ratio(self):
