@@ -218,7 +218,8 @@ public:
     GroupSurroundings(const Experiment& experiment, const PreparedExperiment& prepared)
         : experiment_(experiment), prepared_(prepared) {}
 
-    void move_to(const PreparedRun& run) {
+    /// Says of a new scene why its images are plain, if they are.
+    void move_to(const PreparedRun& run, const Progress& progress) {
         const std::size_t scene_index = run.run->scene;
         const SceneEntry& entry = experiment_.scenes[scene_index];
         const Scene& scene = *prepared_.scenes[scene_index];
@@ -227,6 +228,9 @@ public:
         if (scene_ != scene_index) reference_.reset();
         if (scene_ != scene_index || cutoff_ != cutoff)
             hit_points_ = trace_hit_points(scene, experiment_.samples_per_pixel, experiment_.threads, cutoff);
+        if (scene_ != scene_index)
+            for (const std::string& reason : why_images_are_plain(scene, hit_points_))
+                progress.finished(entry.name + ": " + reason);
         if (entry.reference && (!reference_ || depth_ != max_depth))
             reference_ = load_reference(*entry.reference, subject_of(scene, experiment_.samples_per_pixel, max_depth));
         scene_ = scene_index;
@@ -335,7 +339,7 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
             }
 
             const PreparedRun& first = *locked.runs[0];
-            surroundings.move_to(first);
+            surroundings.move_to(first, progress);
             const std::string others =
                 locked.runs.size() > 1 ? fmt::format(" and {} more", locked.runs.size() - 1) : "";
             const std::string counted = fmt::format("{}{}, one of {} groups", first.run->name, others, group_count);
