@@ -125,11 +125,11 @@ void require_inside(const SceneEntry& entry, const Scene& scene) {
                                                               probe.name, width, height, probe.x, probe.y));
 }
 
-/// What is not finished, in groups that share their photons and hit points.
+/// What is not finished, in groups that share their photons and hit points. They are in the order that they would have
+/// if nothing was finished, whatever is: sums over seeds then go into the same slots.
 std::vector<std::vector<const PreparedRun*>> runs_together(const std::vector<PreparedRun>& runs) {
     std::vector<std::vector<const PreparedRun*>> groups;
     for (const PreparedRun& run : runs) {
-        if (run.finished) continue;
         const auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& candidate) {
             return candidate[0]->run->scene == run.run->scene && can_run_together(candidate[0]->settings, run.settings);
         });
@@ -138,6 +138,8 @@ std::vector<std::vector<const PreparedRun*>> runs_together(const std::vector<Pre
         else
             groups.push_back({&run});
     }
+    for (auto& group : groups) std::erase_if(group, [](const PreparedRun* run) { return run->finished; });
+    std::erase_if(groups, [](const auto& group) { return group.empty(); });
     return groups;
 }
 
