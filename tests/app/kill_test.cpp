@@ -10,17 +10,22 @@ namespace {
 
 class KilledProgram : public ProgramTest {
 protected:
-    /// Starts the program again and again, killing it after a random share of the time that a whole one takes, until it
-    /// ends by itself; returns how often it was killed.
-    int kill_until_done(const std::vector<std::string>& command, double seconds) {
-        std::uniform_real_distribution<double> share(0.0, 0.6);
+    /// Starts the program again and again, killing it at a random moment of the next `seconds`, until it ends by itself;
+    /// returns how often it was killed. `seconds` grow with every kill and shrink with every end, so that there are some
+    /// of both however fast the machine is just then.
+    int kill_until_done(const std::vector<std::string>& command, double& seconds) {
+        std::uniform_real_distribution<double> share(0.0, 1.0);
         for (int kills = 0;; ++kills) {
             Program program(command, folder_ / "messages");
             std::this_thread::sleep_for(std::chrono::duration<double>(seconds * share(random_)));
             if (program.is_running()) program.send(SIGKILL);
             const int code = program.wait();
-            if (code == -SIGKILL) continue;
+            if (code == -SIGKILL) {
+                seconds *= 1.2;
+                continue;
+            }
             EXPECT_EQ(code, 0) << program.messages();
+            seconds *= 0.6;
             return kills;
         }
     }
@@ -36,7 +41,7 @@ protected:
 };
 
 TEST_F(KilledProgram, RunLosesNothing) {
-    const double seconds = seconds_of(run_into("whole"));
+    double seconds = seconds_of(run_into("whole"));
     for (int kills = 0; kills < 34;) {
         std::filesystem::remove_all(folder_ / "killed");
         kills += kill_until_done(run_into("killed"), seconds);
@@ -46,7 +51,7 @@ TEST_F(KilledProgram, RunLosesNothing) {
 }
 
 TEST_F(KilledProgram, RenderLosesNothing) {
-    const double seconds = seconds_of(render_into("whole", 200));
+    double seconds = seconds_of(render_into("whole", 200));
     for (int kills = 0; kills < 12;) {
         for (const char* file : {"killed.exr", "killed.csv", "killed-pass-7.exr"})
             std::filesystem::remove(folder_ / file);
@@ -67,7 +72,7 @@ TEST_F(KilledProgram, ReferenceStaysOne) {
                                         "--threads", "1",
                                         "--samples", std::to_string(samples)};
     };
-    const double seconds = seconds_of(command("timed", 2000));
+    double seconds = seconds_of(command("timed", 2000));
     int kills = 0;
     while (kills < 4) kills += kill_until_done(command("killed", 2000), seconds);
     const Json json = read_reference_json(folder_ / "killed");
