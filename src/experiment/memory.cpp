@@ -11,7 +11,6 @@
 #include "core/error.h"
 #include "gather/photon_map.h"
 #include "integrators/registry.h"
-#include "transport/coarse_hit_points.h"
 
 namespace photonlab {
 

@@ -6,7 +6,6 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "scene/emitter.h"
-#include "transport/coarse_hit_points.h"
 
 namespace photonlab {
 

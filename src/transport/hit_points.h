@@ -157,6 +157,10 @@ inline constexpr double default_branch_cutoff = 1e-4;
 HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int threads,
                            double branch_cutoff = default_branch_cutoff);
 
+/// The same through another camera than the scene's: of fewer pixels, to know what is coming.
+HitPoints trace_hit_points(const Scene& scene, const Camera& camera, int samples_per_pixel, int threads,
+                           double branch_cutoff);
+
 inline std::size_t pixel_count(const HitPoints& hit_points) {
     return static_cast<std::size_t>(hit_points.width) * static_cast<std::size_t>(hit_points.height);
 }

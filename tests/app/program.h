@@ -98,39 +98,10 @@ private:
 class ProgramTest : public ::testing::Test {
 protected:
     ProgramTest() {
-        const Scene scene = build_scene(load_scene_file(folder_.write("walls/scene.xml", two_walls_scene)));
-        ReferenceSettings settings;
-        settings.scene_file = folder_ / "walls/scene.xml";
-        settings.samples = 8;
-        settings.max_depth = scene.max_depth;
-        add_reference_samples(scene, settings, folder_ / "reference");
-        folder_.write("tiny.toml", R"(
-title = "Is anything lost?"
-passes = 24
-seeds = 2
-threads = 1
-record = "powers-of-two"
-snapshots = [1, 20]
-decomposition = true
-photons_per_pass = 300
-[[scenes]]
-path = "walls/scene.xml"
-reference = "reference"
-probes = { middle = [6, 4] }
-[[method]]
-integrator = "ppm"
-schedule = ["hachisuka", "knaus-zwicker"]
-[[method]]
-name = "nearest"
-integrator = "photonmapper"
-mode = "nearest"
-k = 20
-[[method]]
-name = "fixed"
-integrator = "photonmapper"
-[[method]]
-integrator = "path"
-)");
+        write_two_walls(folder_, 8);
+        folder_.write("tiny.toml",
+                      "title = \"Is anything lost?\"\npasses = 24\nsnapshots = [1, 20]\n" +
+                          every_method_on_two_walls);
     }
 
     std::vector<std::string> run_into(const std::string& results) const {

@@ -9,48 +9,15 @@
 #include "experiment/reference_store.h"
 #include "image/exr.h"
 #include "test_folder.h"
+#include "tests/support/results.h"
 
 namespace photonlab {
 namespace {
 
-using Row = std::map<std::string, std::string>;
-
-std::vector<Row> read_csv(const std::filesystem::path& file) {
-    const auto split = [](const std::string& line) {
-        std::vector<std::string> cells{""};
-        for (const char c : line) {
-            if (c == ',')
-                cells.emplace_back();
-            else
-                cells.back() += c;
-        }
-        return cells;
-    };
-    std::istringstream stream(read_text_file(file));
-    std::string line;
-    std::getline(stream, line);
-    const std::vector<std::string> names = split(line);
-    std::vector<Row> rows;
-    while (std::getline(stream, line)) {
-        const std::vector<std::string> cells = split(line);
-        EXPECT_EQ(cells.size(), names.size()) << line;
-        Row& row = rows.emplace_back();
-        for (std::size_t i = 0; i < names.size(); ++i) row[names[i]] = cells.at(i);
-    }
-    return rows;
-}
-
 /// A small experiment with a small reference.
 class ExperimentRuns : public ::testing::Test {
 protected:
-    ExperimentRuns() {
-        const Scene scene = build_scene(load_scene_file(folder_.write("walls/scene.xml", two_walls_scene)));
-        ReferenceSettings settings;
-        settings.scene_file = folder_ / "walls/scene.xml";
-        settings.samples = 64;
-        settings.max_depth = scene.max_depth;
-        add_reference_samples(scene, settings, folder_ / "reference");
-    }
+    ExperimentRuns() { write_two_walls(folder_, 64); }
 
     ExperimentOutcome run(const std::string& settings = "", std::optional<std::string> only = std::nullopt) {
         folder_.write("tiny.toml",
@@ -74,7 +41,7 @@ TEST_F(ExperimentRuns, RecordsEveryRunPassAndComponent) {
     const ExperimentOutcome outcome = run();
     EXPECT_EQ(outcome.ran, 8u);
     EXPECT_EQ(outcome.merged, 8u);
-    const std::vector<Row> rows = read_csv(outcome.records);
+    const std::vector<Row> rows = read_rows(outcome.records);
     ASSERT_EQ(rows.size(), 8u * 4u * 4u);  // runs, passes 0 1 2 3, components
 
     std::map<std::string, double> paths;
@@ -115,7 +82,7 @@ TEST_F(ExperimentRuns, ErrorsAreThoseOfTheImage) {
     run();
     const Image image = read_exr(results() / "runs/walls_ppm_seed-1/snapshots/pass-000003.exr");
     const Reference reference = load_reference(folder_ / "reference", std::nullopt);
-    for (const Row& row : read_csv(results() / "runs/walls_ppm_seed-1/iterations.csv"))
+    for (const Row& row : read_rows(results() / "runs/walls_ppm_seed-1/iterations.csv"))
         if (row.at("pass") == "3") {
             EXPECT_EQ(std::stod(row.at("mse")), judge(image, reference, row.at("component"), false)->mse);
         }
@@ -148,7 +115,7 @@ TEST_F(ExperimentRuns, FinishedRunsAreSkippedAndChangedOnesMadeAgain) {
     outcome = run("max_radius = 0.5\n");  // used by `nearest` alone
     EXPECT_EQ(outcome.ran, 2u);
     EXPECT_EQ(outcome.skipped, 6u);
-    for (const Row& row : read_csv(results() / "iterations.csv")) {
+    for (const Row& row : read_rows(results() / "iterations.csv")) {
         EXPECT_EQ(row.at("max_radius"), row.at("integrator") == "photonmapper" ? "0.5" : "");
     }
 }
@@ -160,7 +127,7 @@ TEST_F(ExperimentRuns, AnInterruptedRunIsMadeAgain) {
     std::filesystem::remove(folder / "run.json");
     write_text_file(folder / "iterations.csv", rows.substr(0, rows.size() / 2));
     EXPECT_EQ(run().ran, 1u);
-    EXPECT_EQ(read_csv(folder / "iterations.csv").size(), 16u);
+    EXPECT_EQ(read_rows(folder / "iterations.csv").size(), 16u);
 }
 
 TEST_F(ExperimentRuns, OnlyTheSelectedRunsAreMade) {
@@ -209,10 +176,10 @@ TEST_F(ExperimentRuns, KeepsSumsOverSeedsForADecomposition) {
 
 TEST_F(ExperimentRuns, RunsThatShareTheirPhotonsRecordWhatTheyWouldAlone) {
     run();
-    const std::vector<Row> together = read_csv(results() / "iterations.csv");
+    const std::vector<Row> together = read_rows(results() / "iterations.csv");
     std::filesystem::remove_all(results());
     for (const char* only : {"walls_ppm_*", "walls_nearest_*", "walls_photons-only_*", "walls_path_*"}) run("", only);
-    const std::vector<Row> alone = read_csv(results() / "iterations.csv");
+    const std::vector<Row> alone = read_rows(results() / "iterations.csv");
     ASSERT_EQ(together.size(), alone.size());
     for (std::size_t i = 0; i < alone.size(); ++i)
         for (const char* column : {"run", "pass", "component", "mse", "bias", "photons_stored", "photons_gathered",
@@ -237,7 +204,7 @@ TEST_F(ExperimentRuns, EachBranchCutoffHasItsOwnHitPoints) {
     const auto points = [&](double cutoff) { return trace_hit_points(scene, 1, 1, cutoff).points.size(); };
     ASSERT_LT(points(0.99), points(1e-4));
     std::size_t rows = 0;
-    for (const Row& row : read_csv(results() / "iterations.csv")) {
+    for (const Row& row : read_rows(results() / "iterations.csv")) {
         EXPECT_EQ(row.at("hit_points"), std::to_string(points(std::stod(row.at("branch_cutoff")))));
         ++rows;
     }
@@ -252,7 +219,7 @@ TEST_F(ExperimentRuns, RecordsProbesAfterEveryPass) {
                   "[[method]]\nintegrator = \"path\"\n");
     const Experiment experiment = read_experiment(folder_ / "probed.toml");
     run_experiment(experiment, prepare_experiment(experiment, results()), results());
-    const std::vector<Row> rows = read_csv(results() / "probes.csv");
+    const std::vector<Row> rows = read_rows(results() / "probes.csv");
     std::map<std::string, std::vector<std::string>> passes;
     for (const Row& row : rows) passes[row.at("run") + " " + row.at("probe")].push_back(row.at("pass"));
     EXPECT_EQ(passes["walls_ppm_seed-1 wall"], (std::vector<std::string>{"1", "2", "3"}));

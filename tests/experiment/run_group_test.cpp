@@ -17,39 +17,10 @@ namespace {
 class InterruptedExperiment : public ::testing::Test {
 protected:
     InterruptedExperiment() {
-        const Scene scene = build_scene(load_scene_file(folder_.write("walls/scene.xml", two_walls_scene)));
-        ReferenceSettings settings;
-        settings.scene_file = folder_ / "walls/scene.xml";
-        settings.samples = 16;
-        settings.max_depth = scene.max_depth;
-        add_reference_samples(scene, settings, folder_ / "reference");
-        folder_.write("tiny.toml", R"(
-title = "Does it go on?"
-passes = 6
-seeds = 2
-threads = 1
-record = "powers-of-two"
-snapshots = [1, 5]
-decomposition = true
-photons_per_pass = 300
-[[scenes]]
-path = "walls/scene.xml"
-reference = "reference"
-probes = { middle = [6, 4] }
-[[method]]
-integrator = "ppm"
-schedule = ["hachisuka", "knaus-zwicker"]
-[[method]]
-name = "nearest"
-integrator = "photonmapper"
-mode = "nearest"
-k = 20
-[[method]]
-name = "fixed"
-integrator = "photonmapper"
-[[method]]
-integrator = "path"
-)");
+        write_two_walls(folder_, 16);
+        folder_.write("tiny.toml",
+                      "title = \"Does it go on?\"\npasses = 6\nsnapshots = [1, 5]\n" +
+                          every_method_on_two_walls);
     }
 
     ExperimentOutcome run(const std::string& results, const ContinuationOptions& options = {},

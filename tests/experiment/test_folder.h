@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "experiment/reference_store.h"
 #include "scene/loader.h"
 #include "scene/scene.h"
 
@@ -67,6 +68,42 @@ inline const std::string two_walls_scene = R"(<scene version="3.0.0">
         <emitter type="area"><rgb name="radiance" value="8, 8, 6"/></emitter>
     </shape>
 </scene>
+)";
+
+/// Writes `two_walls_scene` to walls/scene.xml and its reference of so many samples to reference/.
+inline void write_two_walls(const TestFolder& folder, std::uint64_t samples) {
+    const Scene scene = build_scene(load_scene_file(folder.write("walls/scene.xml", two_walls_scene)));
+    ReferenceSettings settings;
+    settings.scene_file = folder / "walls/scene.xml";
+    settings.samples = samples;
+    settings.max_depth = scene.max_depth;
+    add_reference_samples(scene, settings, folder / "reference");
+}
+
+/// The rest of an experiment on what write_two_walls() wrote: every method, probes and sums over seeds.
+inline const std::string every_method_on_two_walls = R"(
+seeds = 2
+threads = 1
+record = "powers-of-two"
+decomposition = true
+photons_per_pass = 300
+[[scenes]]
+path = "walls/scene.xml"
+reference = "reference"
+probes = { middle = [6, 4] }
+[[method]]
+integrator = "ppm"
+schedule = ["hachisuka", "knaus-zwicker"]
+[[method]]
+name = "nearest"
+integrator = "photonmapper"
+mode = "nearest"
+k = 20
+[[method]]
+name = "fixed"
+integrator = "photonmapper"
+[[method]]
+integrator = "path"
 )";
 
 /// What the InputError of `body` says; empty when there is none.

@@ -2,6 +2,8 @@
 
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -16,8 +18,10 @@
 
 namespace photonlab {
 
-/// Rows by column. For tables without quoted commas.
-inline std::vector<std::map<std::string, std::string>> read_rows(const std::filesystem::path& file) {
+using Row = std::map<std::string, std::string>;
+
+/// Rows by column, all of which must have every column. For tables without quoted commas.
+inline std::vector<Row> read_rows(const std::filesystem::path& file) {
     const auto split = [](const std::string& line) {
         std::vector<std::string> cells{""};
         for (const char c : line) {
@@ -32,17 +36,18 @@ inline std::vector<std::map<std::string, std::string>> read_rows(const std::file
     std::string line;
     std::getline(stream, line);
     const std::vector<std::string> names = split(line);
-    std::vector<std::map<std::string, std::string>> rows;
+    std::vector<Row> rows;
     while (std::getline(stream, line)) {
         const std::vector<std::string> cells = split(line);
-        auto& row = rows.emplace_back();
+        EXPECT_EQ(cells.size(), names.size()) << line;
+        Row& row = rows.emplace_back();
         for (std::size_t i = 0; i < names.size(); ++i) row[names[i]] = i < cells.size() ? cells[i] : "(missing)";
     }
     return rows;
 }
 
 /// A table without the columns that are measured.
-inline std::vector<std::map<std::string, std::string>> repeatable_rows(const std::filesystem::path& file) {
+inline std::vector<Row> repeatable_rows(const std::filesystem::path& file) {
     auto rows = read_rows(file);
     for (auto& row : rows)
         std::erase_if(row, [](const auto& cell) {
