@@ -14,9 +14,11 @@ Student's distribution with one degree less than groups. Beside it stand
     predicted_edge   the same where all bias is that of a straight edge, at which a disc of radius r at the distance t r
                  misses the share (acos t - t sqrt(1 - t^2)) / pi of its photons
 
-and a verdict: "agrees" when the interval holds `predicted`, "agrees at edges" when it holds `predicted_edge`, "between" when it
-lies between the two (pictures have both smooth walls and edges), otherwise "differs"; "cannot tell" when a quantity is not above
-two standard errors at every pass of the window, or the interval is wider than 1.
+and a verdict: "agrees" when the difference from `predicted` is within its 95% interval, "agrees at edges" when that from
+`predicted_edge` is, "between" when the slope lies between the two (pictures have both smooth walls and edges), otherwise
+"differs"; "cannot tell" when a quantity is not above two standard errors at every pass of the window, or an interval is wider
+than 1. The interval of the difference is that of the slope, but for MSE, where the shares that it is predicted from are measured
+as well: the same seeds are left out of both.
 
 Which alpha has the least MSE is told with the probability of each, by drawing groups of seeds anew with replacement, the same
 groups for all alphas, and counting who wins. With a seed a group MSE is a plain mean over the groups, whatever share of it is
@@ -158,6 +160,8 @@ def fit(moments, passes, predicted):
     values = numpy.array([decomposition.decompose(moments[number]) for number in passes])    # [pass][quantity]
     without = numpy.array([decomposition.replicates(moments[number]) for number in passes])    # [pass][group][quantity]
     errors = numpy.array([decomposition.jackknife_error(value, left, counts) for value, left in zip(values, without)])
+    # Student's, since the errors are estimated from as many groups.
+    reach_of = lambda value, left: stats.t.ppf(0.975, len(counts) - 1) * decomposition.jackknife_error(value, left, counts)
     results = {}
     for place, quantity in enumerate(decomposition.QUANTITIES):
         expected = [predicted_slope(quantity, passes, values[0], predicted, bias) for bias in ["squared_bias", "edge"]]
@@ -167,29 +171,34 @@ def fit(moments, passes, predicted):
         if not resolved or not numpy.isfinite(left).all():
             results[quantity] = (None, None, None, *expected, "cannot tell")
             continue
-        # Student's, since the error is estimated from as many groups.
-        reach = stats.t.ppf(0.975, len(counts) - 1) * decomposition.jackknife_error(found, left, counts)
-        verdict = "cannot tell" if 2 * reach > WIDEST else verdict_of(found, reach, *expected)
-        results[quantity] = (found, found - reach, found + reach, *expected, verdict)
+        differences = []
+        for bias, slope_expected in zip(["squared_bias", "edge"], expected):
+            if slope_expected is not None:
+                off = found - slope_expected
+                differences.append((off, reach_of(off, left - predicted_slope(quantity, passes, without[0], predicted, bias))))
+        reach = reach_of(found, left)
+        results[quantity] = (found, found - reach, found + reach, *expected,
+                             "cannot tell" if 2 * reach > WIDEST else verdict_of(differences))
     return results
 
 
-def verdict_of(found, reach, smooth, edge):
-    """Of a slope, half the width of its interval, and its predictions (None where there is none)."""
-    if smooth is None:
-        return ""
-    if abs(found - smooth) <= reach:
-        return "agrees"
-    if edge is None:
-        return "differs"
-    if abs(found - edge) <= reach:
-        return "agrees at edges"
-    return "between" if min(smooth, edge) < found < max(smooth, edge) else "differs"
+def verdict_of(differences):
+    """Of a slope's differences from its predictions, where light is smooth and at edges (without those that there are not),
+    each with half the width of its interval."""
+    if not all(2 * reach <= WIDEST for _, reach in differences):
+        return "cannot tell"
+    for (off, reach), agreement in zip(differences, ["agrees", "agrees at edges"]):
+        if abs(off) <= reach:
+            return agreement
+    if len(differences) == 2 and differences[0][0] * differences[1][0] < 0:
+        return "between"
+    return "differs" if differences else ""
 
 
 def predicted_slope(quantity, passes, first_values, predicted, bias):
     """The fitted slope of the prediction at these passes, with squared bias as `bias` ("squared_bias", "edge") says; None
-    without one."""
+    without one. `first_values`, of all quantities at the first of them, may have rows of replicates; NaN where they are such
+    that the prediction is not positive."""
     places = numpy.array(passes) - 1
     if quantity == "variance":
         # It has no other prediction at edges.
@@ -199,9 +208,7 @@ def predicted_slope(quantity, passes, first_values, predicted, bias):
     squared, variance = predicted[bias][places], predicted["variance"][places]
     if quantity == "squared_bias":
         return slope(passes, squared)
-    of_variance, of_bias = max(0.0, first_values[0]), max(0.0, first_values[1])
-    whole = of_variance * variance / variance[0] + of_bias * squared / squared[0]
-    return slope(passes, whole) if whole[0] > 0 else None
+    return slope(passes, first_values[..., 0:1] * (variance / variance[0]) + first_values[..., 1:2] * (squared / squared[0]))
 
 
 def text(number):

@@ -206,6 +206,21 @@ class Fits(unittest.TestCase):
             if row["component"] == "gathered" and row["quantity"] == "squared_bias":
                 self.assertEqual((row["verdict"], row["slope"]), ("cannot tell", ""))
 
+    def test_a_share_of_bias_that_is_noise_does_not_make_the_mse_differ(self):
+        """Without bias, MSE falls as variance does; but it is predicted with the share of bias that was measured."""
+        variance, _ = self.knaus_zwicker(1.0)
+        seeds, settings = list(range(1, 17)), {}
+        for draw in range(24):
+            made.write_ensemble(self.results, f"draw-{draw}", seeds, lambda n: 0.0, lambda n: 0.2 * variance(n) ** 0.5, self.random)
+            settings[f"draw-{draw}"] = {"alpha": "1", "schedule": "knaus-zwicker", "photons_per_pass": str(1000 + draw)}
+        made.write_records(self.results, settings, seeds)
+        table, _ = self.run_fits()
+        verdicts = [row["verdict"] for row in table
+                    if (row["component"], row["region"], row["quantity"]) == ("gathered", "image", "mse")]
+        self.assertEqual(len(verdicts), 24)
+        # 24 intervals of 95%: 1.2 miss in the mean, more than five with a probability of 1e-3.
+        self.assertLessEqual(verdicts.count("differs"), 5, verdicts)
+
     def test_recorded_radii_predict_hachisukas(self):
         made.write_ensemble(self.results, "box", list(range(1, 17)), lambda n: 0.1, lambda n: 0.2, self.random)
         made.write_records(self.results, {"box": {}}, list(range(1, 17)))
