@@ -16,7 +16,7 @@
 #include "experiment/progress.h"
 #include "experiment/recorder.h"
 #include "experiment/reference.h"
-#include "experiment/run_estimate.h"
+#include "experiment/time_estimate.h"
 #include "experiment/version.h"
 #include "scene/loader.h"
 #include "transport/plain_images.h"
@@ -187,11 +187,19 @@ std::uint64_t bytes_on_disk(const Experiment& experiment, const PreparedExperime
     return bytes + largest_group;
 }
 
-/// Says how much memory the largest group takes; throws InputError when that is not there. Seeds do not change it.
-void require_memory_for(const Experiment& experiment, const PreparedExperiment& prepared,
-                        const std::vector<std::vector<const PreparedRun*>>& groups) {
-    MemoryEstimate most;
-    const PreparedRun* largest = nullptr;
+std::size_t images_kept(const Experiment& experiment, const PreparedRun& run) {
+    return experiment.decomposition ? run.run->plan.recorded.size() : 0;
+}
+
+struct GroupMemory {
+    std::string first_run;
+    MemoryEstimate estimate;
+};
+
+/// Of the group that takes most; empty without groups. Seeds do not change it.
+std::optional<GroupMemory> largest_memory(const Experiment& experiment, const PreparedExperiment& prepared,
+                                          const std::vector<std::vector<const PreparedRun*>>& groups) {
+    std::optional<GroupMemory> largest;
     std::set<std::string> known;
     for (const auto& group : groups) {
         std::vector<RunSettings> settings;
@@ -201,17 +209,12 @@ void require_memory_for(const Experiment& experiment, const PreparedExperiment& 
             points += run->run->point + "\n";
         }
         if (!known.insert(points).second) continue;
-        const PassPlan& plan = group[0]->run->plan;
         const MemoryEstimate estimate =
             estimate_memory(*prepared.scenes[group[0]->run->scene], experiment.samples_per_pixel, settings,
-                            experiment.decomposition ? plan.recorded.size() : 0);
-        if (largest && estimate.total() <= most.total()) continue;
-        most = estimate;
-        largest = group[0];
+                            images_kept(experiment, *group[0]));
+        if (!largest || estimate.total() > largest->estimate.total()) largest = {group[0]->run->name, estimate};
     }
-    if (!largest) return;
-    require_memory(largest->run->name, most);
-    fmt::print(stderr, "memory: {}\n", describe(most));
+    return largest;
 }
 
 /// The hit points and the reference of the runs at hand, kept as long as the next ones want the same.
@@ -311,7 +314,10 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
     std::vector<std::vector<const PreparedRun*>> groups = runs_together(prepared.runs);
     require_space(results, bytes_on_disk(experiment, prepared, groups),
                   "what this experiment still writes (snapshots, sums over seeds, checkpoints)");
-    require_memory_for(experiment, prepared, groups);
+    if (const auto largest = largest_memory(experiment, prepared, groups)) {
+        require_memory(largest->first_run, largest->estimate);
+        fmt::print(stderr, "memory: {}\n", describe(largest->estimate));
+    }
     for (const PreparedRun& ready : prepared.runs) outcome.skipped += ready.finished;
     std::uint64_t passes = 0;
     for (const auto& group : groups) passes += group[0]->settings.passes;
@@ -380,14 +386,18 @@ std::string list_runs(const Experiment& experiment, const PreparedExperiment& pr
     std::size_t width = 0;
     for (const PreparedRun& ready : prepared.runs) width = std::max(width, ready.run->name.size());
     std::string list = fmt::format("{}\n\n", experiment.title);
-    std::map<std::string, RunEstimate> estimates;  // by scene and settings: seeds do not change them
+    struct Cost {
+        TimeEstimate time;
+        double mebibytes;
+    };
+    std::map<std::string, Cost> costs;  // by scene and settings: seeds do not change them
     std::optional<std::size_t> current_scene;
     double current_cutoff = 0.0;
     HitPoints hit_points;
     double seconds = 0.0;
-    double mebibytes = 0.0;
+    const auto groups = runs_together(prepared.runs);
     std::set<const PreparedRun*> first_of_group;
-    for (const auto& group : runs_together(prepared.runs)) first_of_group.insert(group[0]);
+    for (const auto& group : groups) first_of_group.insert(group[0]);
     for (const PreparedRun& ready : prepared.runs) {
         if (ready.finished) {
             list += fmt::format("{:<{}}  finished\n", ready.run->name, width);
@@ -400,13 +410,16 @@ std::string list_runs(const Experiment& experiment, const PreparedExperiment& pr
         current_scene = ready.run->scene;
         current_cutoff = cutoff;
         const auto [known, is_new] =
-            estimates.try_emplace(fmt::format("{} {}", ready.run->scene, settings_json(ready.settings.method).dump()));
-        if (is_new) known->second = estimate_run(scene, hit_points, ready.settings);
-        const RunEstimate& estimate = known->second;
-        seconds += estimate.seconds - (first_of_group.contains(&ready) ? 0.0 : estimate.trace_seconds);
-        mebibytes = std::max(mebibytes, estimate.mebibytes);
-        list += fmt::format("{:<{}}  about {}, {:.0f} MiB\n", ready.run->name, width,
-                            describe_duration(estimate.seconds), estimate.mebibytes);
+            costs.try_emplace(fmt::format("{} {}", ready.run->scene, settings_json(ready.settings.method).dump()));
+        if (is_new)
+            known->second = {estimate_time(scene, hit_points, ready.settings),
+                             estimate_memory(scene, experiment.samples_per_pixel, {ready.settings},
+                                             images_kept(experiment, ready))
+                                 .total()};
+        const auto& [time, mebibytes] = known->second;
+        seconds += time.seconds - (first_of_group.contains(&ready) ? 0.0 : time.trace_seconds);
+        list += fmt::format("{:<{}}  about {}, up to {:.0f} MiB\n", ready.run->name, width,
+                            describe_duration(time.seconds), mebibytes);
     }
     const auto by_passes = [](const PreparedRun& a, const PreparedRun& b) {
         return a.settings.passes < b.settings.passes;
@@ -415,8 +428,10 @@ std::string list_runs(const Experiment& experiment, const PreparedExperiment& pr
     const std::string passes = fewest->settings.passes == most->settings.passes
                                    ? fmt::format("{}", most->settings.passes)
                                    : fmt::format("{} to {}", fewest->settings.passes, most->settings.passes);
-    list += fmt::format("\n{} runs of {} passes on {} threads: about {} in all, at most {:.0f} MiB\n",
-                        prepared.runs.size(), passes, experiment.threads, describe_duration(seconds), mebibytes);
+    list += fmt::format("\n{} runs of {} passes on {} threads: about {} in all\n", prepared.runs.size(), passes,
+                        experiment.threads, describe_duration(seconds));
+    if (const auto largest = largest_memory(experiment, prepared, groups))
+        list += fmt::format("memory of runs that share photons: {}\n", describe(largest->estimate));
     return list;
 }
 

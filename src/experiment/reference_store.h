@@ -1,7 +1,7 @@
 // References in a folder: two halves, made with random streams of their own, that grow by as many samples as somebody
 // cares to add. They are path traced, and unbiased. Where path tracing would take days or finds nothing (caustics of
 // small lights, seen through glass), they are made by ppm instead, with the schedule of Knaus and Zwicker, whose passes
-// can be joined, and half the automatic initial radius: consistent, not unbiased, and reference.json says so.
+// can be joined, from 1.5 footprints on: consistent, not unbiased, and reference.json says so.
 //
 //     half_a.exr, half_b.exr    mean over the half's samples, as layers; how many and of what is in their metadata
 //     reference.json            how it was made, its key, its noise floor, and the halves' checksums

@@ -49,7 +49,7 @@ struct MethodSettings {
     int k = 120;                                      ///< photonmapper, nearest: photons searched, >= 2
     std::optional<double> radius = std::nullopt;      ///< initial (ppm) or fixed (photonmapper, radius) gather radius,
                                                   ///< scene units, > 0; empty: the pixel's footprint times `footprints`
-    double footprints = 3.0;                              ///< radius in pixel footprints where `radius` is empty, > 0
+    double footprints = 2.0;                              ///< radius in pixel footprints where `radius` is empty, > 0
     std::optional<double> max_radius = std::nullopt;      ///< photonmapper, nearest: scene units, > 0; empty: 5% of the
                                                           ///< scene's bounding radius
     int caustic_k = 120;                                  ///< photonmapper, nearest: the same of the caustic map, >= 2

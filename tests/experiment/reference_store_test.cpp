@@ -96,7 +96,7 @@ TEST_F(ReferenceStore, MadeByPpmItResumesAndSaysThatItIsBiased) {
     const Json whole_json = add_reference_samples(scene_, by_ppm(12), folder_ / "whole");
     EXPECT_EQ(whole_json.at("estimate"), "consistent, not unbiased");
     EXPECT_EQ(whole_json.at("method"),
-              "ppm, knaus-zwicker, alpha 0.6666666666666666, half the automatic radius, 300 photons a pass");
+              "ppm, knaus-zwicker, alpha 0.6666666666666666, initial radius 1.5 footprints, 300 photons a pass");
     add_reference_samples(scene_, by_ppm(5), folder_ / "parts");
     add_reference_samples(scene_, by_ppm(7), folder_ / "parts");
     const Reference whole = load_reference(folder_ / "whole", subject());

@@ -174,7 +174,7 @@ TEST(InitialRadius, IsThreeFootprintsUnlessGivenInSceneUnits) {
     };
     double mean = 0.0;
     for (const float footprint : hit_points.footprints)
-        mean += 3.0 * footprint * scene.unit_length / static_cast<double>(hit_points.footprints.size());
+        mean += 2.0 * footprint * scene.unit_length / static_cast<double>(hit_points.footprints.size());
     for (const char* integrator : {"ppm", "photonmapper"}) {
         EXPECT_NEAR(*report_of({.integrator = integrator}).radius_mean, mean, 1e-6 * mean) << integrator;
         EXPECT_NEAR(*report_of({.integrator = integrator, .radius = 0.07}).radius_min, 0.07, 1e-9) << integrator;

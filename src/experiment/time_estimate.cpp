@@ -1,7 +1,6 @@
-#include "experiment/run_estimate.h"
+#include "experiment/time_estimate.h"
 
 #include <algorithm>
-#include <fstream>
 
 #include "integrators/registry.h"
 
@@ -11,15 +10,6 @@ namespace {
 
 constexpr std::uint64_t probe_photons = 10'000;
 constexpr std::uint64_t probe_passes = 3;
-constexpr double mebibyte = 1024.0 * 1024.0;
-
-double resident_mebibytes() {
-    std::ifstream stream("/proc/self/statm");
-    double pages_in_all = 0.0;
-    double pages = 0.0;
-    stream >> pages_in_all >> pages;
-    return pages * 4096.0 / mebibyte;
-}
 
 /// Seconds, scaled to the photons of the real run. `path` spends its time in Trace and knows no photons: scale is 1.
 double scaled(const StageTimes& times, double scale) {
@@ -29,7 +19,7 @@ double scaled(const StageTimes& times, double scale) {
 
 }  // namespace
 
-RunEstimate estimate_run(const Scene& scene, const HitPoints& hit_points, const RunSettings& settings) {
+TimeEstimate estimate_time(const Scene& scene, const HitPoints& hit_points, const RunSettings& settings) {
     RunSettings probe = settings;
     double scale = 1.0;
     if (uses_setting(settings.method, "photons_per_pass")) {
@@ -50,21 +40,13 @@ RunEstimate estimate_run(const Scene& scene, const HitPoints& hit_points, const 
     const double second = std::max(0.0, scaled(estimated[1].times, scale) - 2.0 * pass_seconds);
     const double growth = std::max(0.0, second - first);
 
-    RunEstimate estimate;
+    TimeEstimate estimate;
     estimate.seconds = pass_seconds * static_cast<double>(settings.passes);
     if (passes.paths_emitted > 0)
         estimate.trace_seconds = passes.times.of(Stage::Trace) * scale / static_cast<double>(probe_passes) *
                                  static_cast<double>(settings.passes);
     for (const std::uint64_t pass : settings.estimated)
         estimate.seconds += first + growth * static_cast<double>(pass > 0 ? pass - 1 : 0);
-
-    const auto map = [&](std::size_t i) { return static_cast<double>(estimated[i].report.map_bytes) * scale; };
-    const double photons_of_pass =
-        static_cast<double>(passes.photons_stored) / static_cast<double>(probe_passes) * scale * sizeof(Photon);
-    const double map_growth = std::max(0.0, map(1) - map(0));
-    const double map_bytes =
-        map_growth > 0.1 * map(0) ? map(0) + map_growth * static_cast<double>(settings.passes - 1) : map(0);
-    estimate.mebibytes = resident_mebibytes() + (map_bytes + photons_of_pass) / mebibyte;
     return estimate;
 }
 

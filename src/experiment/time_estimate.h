@@ -1,4 +1,4 @@
-// How long a run will take and how much memory, before it is started: three small passes are measured and scaled.
+// How long a run will take, before it is started: three small passes are measured and scaled.
 //
 // The model is linear. Tracing, building and gathering take time in proportion to the photons of a pass; direct light
 // does not know them. An estimate at pass i costs what it did at pass 1, plus (i - 1) times what it grew by from pass 1
@@ -13,12 +13,11 @@
 
 namespace photonlab {
 
-struct RunEstimate {
+struct TimeEstimate {
     double seconds = 0.0;        ///< of passes and estimates; metrics and files not included
     double trace_seconds = 0.0;  ///< of these in tracing photons, which methods run together share
-    double mebibytes = 0.0;      ///< of the process at its largest
 };
 
-RunEstimate estimate_run(const Scene& scene, const HitPoints& hit_points, const RunSettings& settings);
+TimeEstimate estimate_time(const Scene& scene, const HitPoints& hit_points, const RunSettings& settings);
 
 }  // namespace photonlab
