@@ -260,12 +260,37 @@ void write_exr(const std::filesystem::path& file, const Image& image, const Meta
 
 namespace {
 
+/// Refuses a header whose attributes claim more bytes than the file has: OpenEXR asks for memory for them, up to 2 GiB,
+/// before it reads them. What else may be wrong with it OpenEXR finds itself.
+void require_attributes_within(const std::filesystem::path& path) {
+    const std::uint64_t file_bytes = std::filesystem::file_size(path);
+    std::ifstream file(path, std::ios::binary);
+    file.seekg(8);  // the magic number and the version
+    const auto skip_text = [&] {
+        for (char character = 0; file.get(character) && character != 0;) {
+        }
+    };
+    while (file && file.peek() > 0) {
+        skip_text();  // the attribute's name
+        skip_text();  // and its type
+        std::uint32_t bytes = 0;
+        for (unsigned shift = 0; shift < 32; shift += 8)
+            bytes |= static_cast<std::uint32_t>(static_cast<unsigned char>(file.get())) << shift;
+        if (!file) return;
+        if (bytes > file_bytes - static_cast<std::uint64_t>(file.tellg()))
+            throw InputError(path.string(), "is broken: an attribute of its header claims " + std::to_string(bytes) +
+                                                " bytes, more than follow");
+        file.seekg(bytes, std::ios::cur);
+    }
+}
+
 /// Refuses what is not an OpenEXR file, and turns OpenEXR's own exceptions into InputErrors.
 template <typename Read>
 auto read_checked(const std::filesystem::path& file, const Read& read) {
     const std::string place = file.string();
     require_ordinary_file(file);
     if (!Imf::isOpenExrFile(place.c_str())) throw InputError(place, "is not an OpenEXR file");
+    require_attributes_within(file);
     try {
         return read();
     } catch (const InputError&) {

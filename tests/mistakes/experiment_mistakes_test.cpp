@@ -26,8 +26,10 @@ TEST(ExperimentMistakes, FilesThatAreNoTextOrTooLargeAreRefused) {
     EXPECT_EQ(message(""), "a.toml: passes is missing: how many passes each run has");
     for (const std::string title : {R"("größ\"er")", R"('größ\')", "\"\"\"gr\n\"ö\"\n\"\"\"", "'''\nö'''"})
         EXPECT_EQ(message("title = " + title + " # ö\n" + good), "no error") << title;
-    EXPECT_EQ(message("title = \"\"\"\n\"\"\" ö\n" + good),
-              "a.toml:2: expected letters beyond ASCII only in quotes and comments");
+    // Where toml++ asks whether a letter beyond ASCII is a space.
+    EXPECT_EQ(message("title = \"\"\"\n\"\"\" ö\n" + good).substr(0, 9), "a.toml:2:");
+    EXPECT_EQ(message("я = 1\n" + good).substr(0, 9), "a.toml:1:");
+    EXPECT_EQ(message("a = 1PP[\"я\"]\n" + good).substr(0, 9), "a.toml:1:");
     EXPECT_EQ(message("# a\xdf\n").substr(0, 9), "a.toml:1:");
     EXPECT_EQ(message(good + std::string(1, '\0')).substr(0, 9), "a.toml:5:");
     EXPECT_EQ(message(std::string((1 << 24) + 1, '#')), "a.toml: expected at most 16777216 bytes, got 16777217");

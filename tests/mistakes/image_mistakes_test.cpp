@@ -183,6 +183,11 @@ TEST(ExrMistakes, EachGetsItsMessage) {
     EXPECT_EQ(message(with_data_window(good, 0, 0, 7, 2'147'483'646)).rfind("a.exr: ", 0), 0u);
     EXPECT_EQ(message(with_data_window(good, 5, 5, 0, 0)).rfind("a.exr: ", 0), 0u);
 
+    std::string long_attribute = good;
+    const std::string compression("compression\0compression\0", 24);
+    long_attribute.replace(good.find(compression) + compression.size(), 4, little_endian(1'600'000'000));
+    EXPECT_EQ(message(long_attribute),
+              "a.exr: is broken: an attribute of its header claims 1600000000 bytes, more than follow");
     // The same length as "emission,direct,gathered", which keeps the header whole.
     const std::string layers("photonlab.layers\0string\0", 24);
     EXPECT_EQ(message(with_value(good, layers, "emission,direct,emission")), "a.exr: names a layer twice");
@@ -191,7 +196,7 @@ TEST(ExrMistakes, EachGetsItsMessage) {
         message(with_value(good, layers, "emission,direct,elevated")),
         "a.exr: has no channel elevated.R; it has: B, G, R, direct.B, direct.G, direct.R, emission.B, emission.G, "
         "emission.R, gathered.B, gathered.G, gathered.R");
-    EXPECT_EQ(message(with_value(good, std::string("compression\0compression\0", 24), "\x63"))
+    EXPECT_EQ(message(with_value(good, compression, "\x63"))
                   .rfind("a.exr: cannot be read as OpenEXR: ", 0),
               0u);
 
