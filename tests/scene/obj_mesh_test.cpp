@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -123,6 +124,19 @@ TEST_F(ObjMeshTest, ComputedNormalsWeighFacesByTheirAngle) {
     const auto mesh = load("v 0 0 0\nv 1 0 0\nv 5 5 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\nf 1 4 5\n", false);
     const VectorD expected = VectorD(1, 0, 1).normalized();
     for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(mesh.normals[mesh.triangles[0].x][axis], expected[axis], 1e-12);
+}
+
+TEST_F(ObjMeshTest, VerticesHaveTheTextureCoordinatesOfTheirCorners) {
+    // A seam: position 1 has one texture coordinate in each face.
+    const auto mesh = load(square + "vt 0 0\nvt 1 0\nvt 0.25 0.75\nvt 0.5 1\nf 1/1 2/2 3/3\nf 1/4 3/3 4/-3\n", true);
+    ASSERT_EQ(mesh.positions.size(), 5u);
+    ASSERT_EQ(mesh.texture_coordinates.size(), 5u);
+    const std::array<Imath::V2d, 6> expected{{{0, 0}, {1, 0}, {0.25, 0.75}, {0.5, 1}, {0.25, 0.75}, {1, 0}}};
+    for (std::size_t i = 0; i < 6; ++i) {
+        const auto& triangle = mesh.triangles[i / 3];
+        const std::uint32_t corner = i % 3 == 0 ? triangle.x : i % 3 == 1 ? triangle.y : triangle.z;
+        EXPECT_EQ(Imath::V2d(mesh.texture_coordinates[corner]), expected[i]) << i;
+    }
 }
 
 TEST_F(ObjMeshTest, NormalsAndTextureCoordinatesOfSomeCornersAreThoseOfNone) {
