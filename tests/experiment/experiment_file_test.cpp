@@ -61,6 +61,11 @@ TEST_F(ExperimentFile, TopLevelSettingsAreDefaultsWhereTheyAreUsed) {
     EXPECT_EQ(experiment.runs[3].settings.values.photons_per_pass, 5u);
 }
 
+TEST_F(ExperimentFile, SamplesPerPixelAreOneUnlessItSaysOtherwise) {
+    EXPECT_EQ(read(least + ppm).samples_per_pixel, 1);
+    EXPECT_EQ(read(least + "samples_per_pixel = 9\n" + ppm).samples_per_pixel, 9);
+}
+
 TEST_F(ExperimentFile, PassZeroAndTheLastAreAlwaysRecorded) {
     using Passes = std::vector<std::uint64_t>;
     EXPECT_EQ(read("scenes = [\"lamp.xml\"]\npasses = 11\n" + ppm).runs[0].plan.recorded, (Passes{0, 1, 2, 4, 8, 11}));

@@ -231,6 +231,24 @@ TEST_F(LoaderTest, PublicCornellBoxesOpenUnmodified) {
     EXPECT_FALSE(scene.notes.empty());
 }
 
+TEST_F(LoaderTest, OfSeveralSensorsTheFirstIsUsedAndANoteSaysSo) {
+    const auto scene = load(
+        "<scene><sensor type='perspective'><float name='fov' value='20'/></sensor>"
+        "<sensor type='perspective'><float name='fov' value='70'/></sensor></scene>");
+    EXPECT_EQ(scene.camera.fov_x, 20.0);
+    ASSERT_EQ(scene.notes.size(), 1u);
+    EXPECT_NE(scene.notes[0].find("more than one sensor: the first is used"), std::string::npos) << scene.notes[0];
+}
+
+TEST_F(LoaderTest, AMetalMayBeGivenByItsIndex) {
+    const auto scene = load_with_sensor(
+        "<bsdf type='conductor' id='a'><rgb name='eta' value='0.2, 0.9, 1.1'/><rgb name='k' value='3.9, 2.4, 2.2'/>"
+        "</bsdf><shape type='rectangle'><ref id='a'/></shape>");
+    const auto& conductor = std::get<Conductor>(scene.materials.at(scene.shapes.at(0).material).bsdf);
+    EXPECT_EQ(conductor.eta, Color(0.2f, 0.9f, 1.1f));
+    EXPECT_EQ(conductor.k, Color(3.9f, 2.4f, 2.2f));
+}
+
 TEST_F(LoaderTest, ColoursAreLinearUnlessTheySayOtherwise) {
     const auto reflectance = [&](const std::string& property) {
         const auto scene =
