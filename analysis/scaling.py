@@ -8,8 +8,8 @@ hit points with an initial radius of 5.55. Each row is a run (or, against passes
 pass. PM is there only against passes: it keeps every photon, so its memory is the photons' and their index' of all passes, while
 PPM keeps those of one. Without --run an older scaling.csv is drawn.
 
-`exponent` in the list that is printed is the slope on logarithmic axes between the two largest values: 1 is proportional, 0 is
-constant.
+`exponent` in the list that is printed is the slope on logarithmic axes from a tenth of the largest value (or from what is next
+to that) to the largest: 1 is proportional, 0 is constant.
 """
 
 import argparse
@@ -112,10 +112,13 @@ def curve(table, axis, column, **chosen):
 
 
 def exponent(points):
-    """The slope on logarithmic axes between the two largest values; NaN with fewer."""
-    if len(points) < 2 or min(points[-1][1], points[-2][1]) <= 0:
+    """The slope on logarithmic axes over the last decade of values; NaN with fewer than two."""
+    if len(points) < 2:
         return math.nan
-    (x0, y0), (x1, y1) = points[-2:]
+    x1, y1 = points[-1]
+    x0, y0 = min(points[:-1], key=lambda point: abs(math.log(10 * point[0] / x1)))
+    if min(y0, y1) <= 0:
+        return math.nan
     return math.log(y1 / y0) / math.log(x1 / x0)
 
 

@@ -1,10 +1,10 @@
 #include "experiment/recorder.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <fstream>
+#include <limits>
 
 #include "integrators/registry.h"
 
@@ -172,9 +172,12 @@ bool photons_carry_direct(const MethodSettings& settings) {
 }
 
 double peak_resident_mib() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<double>(usage.ru_maxrss) / 1024.0;
+    // Not getrusage(): after exec() that still knows the size of what the process was before, Python for instance.
+    std::ifstream stream("/proc/self/status");
+    double kibibytes = std::numeric_limits<double>::quiet_NaN();
+    for (std::string word; stream >> word;)
+        if (word == "VmHWM:") stream >> kibibytes;
+    return kibibytes / 1024.0;
 }
 
 void reset_peak_resident() {
