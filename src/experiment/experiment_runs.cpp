@@ -412,10 +412,10 @@ std::string list_runs(const Experiment& experiment, const PreparedExperiment& pr
         const auto [known, is_new] =
             costs.try_emplace(fmt::format("{} {}", ready.run->scene, settings_json(ready.settings.method).dump()));
         if (is_new)
-            known->second = {estimate_time(scene, hit_points, ready.settings),
-                             estimate_memory(scene, experiment.samples_per_pixel, {ready.settings},
-                                             images_kept(experiment, ready))
-                                 .total()};
+            known->second = {
+                estimate_time(scene, hit_points, ready.settings),
+                estimate_memory(scene, experiment.samples_per_pixel, {ready.settings}, images_kept(experiment, ready))
+                    .total()};
         const auto& [time, mebibytes] = known->second;
         seconds += time.seconds - (first_of_group.contains(&ready) ? 0.0 : time.trace_seconds);
         list += fmt::format("{:<{}}  about {}, up to {:.0f} MiB\n", ready.run->name, width,

@@ -1,4 +1,5 @@
-// toml++ 3.3 (Debian 12) or 3.4 (Debian 13), whose files differ in their endings, with what is wrong about it put right:
+// toml++ 3.3 (Debian 12) or 3.4 (Debian 13), whose files differ in their endings, with what is wrong about it put
+// right:
 //
 // - It asserts that a key begins like one before it refuses the key by an error of its own. A debug build would end
 //   there.

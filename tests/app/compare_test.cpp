@@ -55,9 +55,9 @@ TEST_F(Compare, PrintsTheErrorsOfAnImageAsRenderDoes) {
 TEST_F(Compare, OneImageIsAReferenceOfUnknownNoise) {
     ASSERT_EQ(::link((folder_ / "reference/half_a.exr").c_str(), (folder_ / "image.exr").c_str()), 0);
     std::string said;
-    ASSERT_EQ(run_program({"compare", (folder_ / "image.exr").string(), (folder_ / "reference/half_b.exr").string()},
-                          said),
-              0);
+    ASSERT_EQ(
+        run_program({"compare", (folder_ / "image.exr").string(), (folder_ / "reference/half_b.exr").string()}, said),
+        0);
     EXPECT_GT(value_of(said, "mse"), 0.0);
     EXPECT_NE(said.find("reference_floor  not known: the reference has no halves"), std::string::npos) << said;
 }

@@ -12,9 +12,10 @@
 #include "scene/materials/merl.h"
 #include "tests/mistakes/mistakes.h"
 
-// Read by LeakSanitizer, in builds that have it. libpng jumps over OpenImageIO's destructors where a PNG is broken, which
-// leaks the message of the error.
-extern "C" const char* __lsan_default_suppressions() {  // NOLINT(bugprone-reserved-identifier): the sanitizer's name for it
+// Read by LeakSanitizer, in builds that have it. libpng jumps over OpenImageIO's destructors where a PNG is broken,
+// which leaks the message of the error.
+extern "C" const char*
+__lsan_default_suppressions() {  // NOLINT(bugprone-reserved-identifier): the sanitizer's name for it
     return "leak:OpenImageIO";
 }
 
@@ -196,9 +197,7 @@ TEST(ExrMistakes, EachGetsItsMessage) {
         message(with_value(good, layers, "emission,direct,elevated")),
         "a.exr: has no channel elevated.R; it has: B, G, R, direct.B, direct.G, direct.R, emission.B, emission.G, "
         "emission.R, gathered.B, gathered.G, gathered.R");
-    EXPECT_EQ(message(with_value(good, compression, "\x63"))
-                  .rfind("a.exr: cannot be read as OpenEXR: ", 0),
-              0u);
+    EXPECT_EQ(message(with_value(good, compression, "\x63")).rfind("a.exr: cannot be read as OpenEXR: ", 0), 0u);
 
     ASSERT_EQ(::mkfifo((folder / "pipe.exr").c_str(), 0600), 0);
     EXPECT_EQ(refusal(folder.path(), [&] { read_exr(folder / "pipe.exr"); }),
