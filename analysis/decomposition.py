@@ -13,8 +13,10 @@ its own noise is then part of the squared bias.
 
 Only inner products of the deviations y_g - (A + B) / 2 enter, so each region needs one G x G matrix a pass, and leaving out
 a group costs nothing. Standard errors are those of the jackknife over groups (for groups of unequal size after Busing, Meijer
-and van der Leeden 1999, "Delete-m Jackknife for Unequal m"); the reference's noise is not in them. Where a bias is lost in
-noise they are too large, by a factor of up to the root of 2.
+and van der Leeden 1999, "Delete-m Jackknife for Unequal m"), and of the reference: its noise adds -d (A + B - 2 r) to the squared
+bias of a pixel with the deviation d from its mean, whose spread is that of d (A - B), since the halves' noise is as likely to
+have either sign; summed over pixels, which are independent. A reference of one image has a noise that is not known, and not in
+them. Where a bias is lost in noise they are too large, by a factor of up to the root of 2.
 """
 
 import argparse
@@ -73,26 +75,52 @@ def read_slot(file):
     pixels = image.read_image(OpenImageIO.FLOAT)
     image.close()
     seeds = str(spec.getattribute("photonlab.seeds") or "").split()
-    if not seeds or pixels is None:
+    if pixels is None:
+        raise records.RecordError(f"{file}: its pixels cannot be read; is it whole?")
+    if not seeds or not all(seed.isdecimal() for seed in seeds):
         raise records.RecordError(f"{file}: expected sums of images with the attribute photonlab.seeds")
     places = {}
     for index, name in enumerate(spec.channelnames):
         layer, _, channel = name.rpartition(".")
         if layer:
             places.setdefault(layer, {})[channel] = index
+    if not all(set(channels) == set("RGB") for channels in places.values()):
+        raise records.RecordError(f"{file}: expected the channels R, G and B of each layer")
     return [int(seed) for seed in seeds], {
         layer: pixels[:, :, [channels[channel] for channel in "RGB"]].astype(numpy.float64) / len(seeds)
         for layer, channels in places.items()}
+
+
+def are_whole(numbers):
+    return isinstance(numbers, list) and all(type(number) is int and number >= 0 for number in numbers)
+
+
+# What ensemble.json has, and what each must be.
+DESCRIPTION = {
+    "point": (lambda value: isinstance(value, str), "a name"),
+    "scene": (lambda value: isinstance(value, str), "a name"),
+    "passes": (lambda value: are_whole(value) and value and len(set(value)) == len(value), "different passes"),
+    "regions": (lambda value: isinstance(value, dict) and WHOLE not in value and
+                all(are_whole(region) and len(region) == 4 for region in value.values()),
+                f"left, top, right, bottom by name, which is not {WHOLE}"),
+    "reference": (lambda value: value is None or (isinstance(value, dict) and isinstance(value.get("path"), str)), "a path, or null"),
+    "photons_carry_direct": (lambda value: isinstance(value, bool), "true or false"),
+}
 
 
 def read_ensemble(folder):
     file = Path(folder) / "ensemble.json"
     try:
         description = json.loads(file.read_text(encoding="utf-8"))
-        for key in ["point", "scene", "passes", "regions", "reference", "photons_carry_direct"]:
-            description[key]
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (OSError, ValueError) as error:
         raise records.RecordError(f"{file}: is not the description of an ensemble: {error}") from error
+    if not isinstance(description, dict):
+        raise records.RecordError(f"{file}: is not the description of an ensemble")
+    for key, (is_sound, expected) in DESCRIPTION.items():
+        if key not in description or not is_sound(description[key]):
+            raise records.RecordError(f"{file}: {key}: expected {expected}")
+    if not isinstance(description.get("working_directory", ""), str):
+        raise records.RecordError(f"{file}: working_directory: expected a path")
     seeds, layers = [], []
     for slot in sorted(Path(folder).glob("slot-*.exr")):
         own_seeds, own_layers = read_slot(slot)
@@ -100,6 +128,8 @@ def read_ensemble(folder):
                                   for layer in ["direct", "gathered"])}
         if set(own_layers) != expected:
             raise records.RecordError(f"{slot}: expected the layers of the passes in ensemble.json")
+        if layers and own_layers["emission"].shape != layers[0]["emission"].shape:
+            raise records.RecordError(f"{slot}: is of another size than the sums beside it")
         seeds.append(own_seeds)
         layers.append(own_layers)
     if len(seeds) < 2:
@@ -126,8 +156,12 @@ def read_halves(ensemble, results, component):
     carried = ensemble.description["photons_carry_direct"]
     files = records.reference_files(results, ensemble.description)
     if not files:
-        raise records.RecordError(f"{ensemble.folder}: its reference {ensemble.description['reference']['path']} is not there")
+        raise records.RecordError(f"{ensemble.folder}: its reference {ensemble.description['reference']['path']} is not there; "
+                                  "expected an EXR, or a folder of half_a.exr and half_b.exr")
     halves = [pictures.read_component(file, component, carried) for file in files]
+    for file, half in zip(files, halves):
+        if half is not None and half.shape != ensemble.layers[0]["emission"].shape:
+            raise records.RecordError(f"{ensemble.folder}: its reference is of another size than its images: {file}")
     return halves if all(half is not None for half in halves) else []
 
 
@@ -135,8 +169,9 @@ def regions_of(ensemble, shape):
     """{name: (slice of rows, slice of columns)}, the whole image first."""
     regions = {WHOLE: (slice(0, shape[0]), slice(0, shape[1]))}
     for name, (left, top, right, bottom) in ensemble.description["regions"].items():
-        if right > shape[1] or bottom > shape[0]:
-            raise records.RecordError(f"{ensemble.folder}: expected the region {name} inside {shape[1]}x{shape[0]} pixels")
+        if not (left < right <= shape[1] and top < bottom <= shape[0]):
+            raise records.RecordError(f"{ensemble.folder}: expected the region {name} inside {shape[1]}x{shape[0]} pixels, and not "
+                                      "empty")
         regions[name] = (slice(top, bottom), slice(left, right))
     return regions
 
@@ -145,15 +180,19 @@ def regions_of(ensemble, shape):
 class Moments:
     """What is needed of a region after a pass: inner products of the groups' deviations from the reference, as means over
     pixels and channels, and the reference's own variance: 0 for a reference of one image, NaN without one, so that what needs
-    it becomes NaN. A pixel with a value that is not finite in any of the images is left out, as it is in the records."""
+    it becomes NaN. A pixel with a value that is not finite in any of the images is left out, as it is in the records.
+
+    `reference_terms` has a value a pixel of the region, whose spread is that of what the reference's noise there adds to the
+    squared bias; 0 where a pixel is left out, or the noise is not known."""
     gram: numpy.ndarray
     counts: numpy.ndarray
     floor: float
     pixels: int
+    reference_terms: numpy.ndarray
 
     def without(self, group):
         kept = numpy.arange(len(self.counts)) != group
-        return Moments(self.gram[numpy.ix_(kept, kept)], self.counts[kept], self.floor, self.pixels)
+        return Moments(self.gram[numpy.ix_(kept, kept)], self.counts[kept], self.floor, self.pixels, self.reference_terms)
 
 
 def moments_of(ensemble, results, component):
@@ -165,18 +204,20 @@ def moments_of(ensemble, results, component):
     for number in ensemble.description["passes"]:
         images = numpy.stack([ensemble.component(group, number, component) for group in range(len(ensemble.seeds))])
         mean = sum(halves) / len(halves) if halves else numpy.zeros(images.shape[1:])
-        if mean.shape != images.shape[1:]:
-            raise records.RecordError(f"{ensemble.folder}: its reference is of another size than its images")
         noise = (numpy.full_like(mean, numpy.nan) if not halves else (halves[0] - halves[1]) ** 2 / 4 if len(halves) == 2
                  else numpy.zeros_like(mean))
         deviations = images - mean
         finite = numpy.isfinite(deviations).all(axis=(0, 3))
+        of_mean = numpy.tensordot(ensemble.counts / ensemble.counts.sum(), deviations, axes=1)
+        terms = (of_mean * (halves[0] - halves[1])).mean(axis=2) if len(halves) == 2 else numpy.zeros(mean.shape[:2])
+        terms = numpy.where(finite, terms, 0)
         for name, place in regions_of(ensemble, mean.shape).items():
             kept = finite[place]
             flat = deviations[(slice(None), *place)][:, kept].reshape(len(deviations), -1)
             if flat.shape[1]:
                 found[number, name] = Moments(flat @ flat.T / flat.shape[1], ensemble.counts,
-                                              float(noise[place][kept].mean()), int(kept.sum()))
+                                              float(noise[place][kept].mean()), int(kept.sum()),
+                                              terms[place].ravel() / kept.sum())
     return found
 
 
@@ -207,6 +248,13 @@ def jackknife_error(estimate, without, counts):
     combined = groups * estimate - ((1 - 1 / shares) * without).sum(axis=0)
     pseudo = shares * estimate - (shares - 1) * without
     return numpy.sqrt(((pseudo - combined) ** 2 / (shares - 1)).mean(axis=0))
+
+
+def standard_errors(moments):
+    """Of decompose(): over the seeds by the jackknife, and of the reference."""
+    seeds = jackknife_error(decompose(moments), replicates(moments), moments.counts)
+    reference = numpy.linalg.norm(moments.reference_terms)
+    return numpy.hypot(seeds, [0, reference, reference])
 
 
 COLUMNS = ["experiment", "scene", "point", *records.SETTINGS, "pass", "component", "region", "pixels", "seeds", "groups",
@@ -243,7 +291,7 @@ def table_of(ensemble, results, own):
     for component in records.COMPONENTS:
         for (number, region), moments in moments_of(ensemble, results, component).items():
             values = decompose(moments)
-            errors = jackknife_error(values, replicates(moments), moments.counts)
+            errors = standard_errors(moments)
             of_pass = own[(own["pass"] == number) & (own["component"] == component)]
             paths = pandas_mean(of_pass["paths_emitted"])
             table.append({

@@ -17,8 +17,9 @@ Student's distribution with one degree less than groups. Beside it stand
 and a verdict: "agrees" when the difference from `predicted` is within its 95% interval, "agrees at edges" when that from
 `predicted_edge` is, "between" when the slope lies between the two (pictures have both smooth walls and edges), otherwise
 "differs"; "cannot tell" when a quantity is not above two standard errors at every pass of the window, or an interval is wider
-than 1. The interval of the difference is that of the slope, but for MSE, where the shares that it is predicted from are measured
-as well: the same seeds are left out of both.
+than 1. Intervals are those of the seeds and, for squared bias and MSE, of the noise of the reference's halves. What a
+prediction is measured from (the share of bias in MSE, that of direct light in the whole picture) has its part in the interval of
+the difference: the same seeds are left out of both.
 
 Which alpha has the least MSE is told with the probability of each, by drawing groups of seeds anew with replacement, the same
 groups for all alphas, and counting who wins. With a seed a group MSE is a plain mean over the groups, whatever share of it is
@@ -61,12 +62,17 @@ def default_window(passes):
     return max(4, last // 32), last
 
 
-def slope(passes, values):
-    """Least squares on logarithmic axes; NaN when a value is not positive. `values` may have rows of replicates."""
+def slope_weights(passes):
+    """What the logarithm of each pass's value counts in the slope."""
     x = numpy.log(numpy.asarray(passes, dtype=float))
     x -= x.mean()
+    return x / (x @ x)
+
+
+def slope(passes, values):
+    """Least squares on logarithmic axes; NaN when a value is not positive. `values` may have rows of replicates."""
     with numpy.errstate(invalid="ignore", divide="ignore"):
-        return numpy.log(values) @ x / (x @ x)
+        return numpy.log(values) @ slope_weights(passes)
 
 
 def knaus_zwicker_radii(alpha, last):
@@ -85,6 +91,8 @@ def recorded_radii(rows, last):
     if radii.isna().any():
         raise records.RecordError(f"run {of_total['run'][radii.isna()].iloc[0]}: expected radius_mean in every row of ppm")
     means = radii.groupby(of_total["pass"]).mean()
+    if means.empty or means.index.max() < last:
+        raise records.RecordError(f"iterations.csv: expected radii of run {rows['run'].iloc[0]} up to pass {last}, which its sums have")
     number = numpy.arange(1, last + 1)
     return numpy.exp(2 * numpy.interp(numpy.log(number), numpy.log(means.index + 1.0), numpy.log(means))
                      - 2 * math.log(means.iloc[0]))
@@ -126,16 +134,13 @@ def predictions(rows, component, last):
             "edge": squared_bias_at_edges(squared)}
 
 
-def with_direct_light(predicted, moments, region, number):
-    """The prediction of the whole picture: direct light by shadow rays adds its own variance, which falls as 1 / n. Shares
-    are those measured at pass `number`. `moments` are by component."""
-    if not predicted or not moments.get("direct"):
+def with_direct_light(predicted, direct, gathered, number):
+    """The prediction of the whole picture: direct light by shadow rays adds its own variance, which falls as 1 / n. `direct` and
+    `gathered` are the variances that were measured at pass `number`, and give the shares."""
+    direct, gathered = max(0.0, direct), max(0.0, gathered)
+    if not predicted or direct + gathered == 0:
         return predicted
     variance = predicted["variance"]
-    direct, gathered = (max(0.0, decomposition.decompose(moments[component][number, region])[0])
-                        for component in ["direct", "gathered"])
-    if direct + gathered == 0:
-        return predicted
     passes = numpy.arange(1, len(variance) + 1)
     return {**predicted,
             "variance": (direct * number / passes + gathered * variance / variance[number - 1]) / (direct + gathered)}
@@ -154,30 +159,43 @@ def asymptotes(first, component):
             "mse": (-min(alpha, 2 - 2 * alpha), None)}
 
 
-def fit(moments, passes, predicted):
-    """{quantity: (slope, low, high, predicted slope, that at edges, verdict)} from {pass: Moments}."""
+def fit(moments, passes, predicted, predicted_without):
+    """{quantity: (slope, low, high, predicted slope, that at edges, verdict)} from {pass: Moments}; the prediction, and that
+    without each group."""
     counts = moments[passes[0]].counts
     values = numpy.array([decomposition.decompose(moments[number]) for number in passes])    # [pass][quantity]
     without = numpy.array([decomposition.replicates(moments[number]) for number in passes])    # [pass][group][quantity]
-    errors = numpy.array([decomposition.jackknife_error(value, left, counts) for value, left in zip(values, without)])
-    # Student's, since the errors are estimated from as many groups.
-    reach_of = lambda value, left: stats.t.ppf(0.975, len(counts) - 1) * decomposition.jackknife_error(value, left, counts)
+    errors = numpy.array([decomposition.standard_errors(moments[number]) for number in passes])
+    terms = numpy.array([moments[number].reference_terms for number in passes])    # [pass][pixel]
+    student = stats.t.ppf(0.975, len(counts) - 1)    # since the error over seeds is estimated from as many groups
+
+    def reach_of(value, left, of_reference):
+        """Half of the 95% interval, of the seeds and of the reference's noise."""
+        return math.hypot(student * decomposition.jackknife_error(value, left, counts),
+                          stats.norm.ppf(0.975) * numpy.linalg.norm(of_reference))
+
     results = {}
     for place, quantity in enumerate(decomposition.QUANTITIES):
-        expected = [predicted_slope(quantity, passes, values[0], predicted, bias) for bias in ["squared_bias", "edge"]]
-        resolved = (values[:, place] > RESOLVED * errors[:, place]).all()
+        def predicted_by(bias):
+            return predicted_slope(quantity, passes, values[0], predicted, bias)
+        expected = {bias: predicted_by(bias) for bias in ["squared_bias", "edge"]}
         found = slope(passes, values[:, place])
         left = slope(passes, without[:, :, place].T)
-        if not resolved or not numpy.isfinite(left).all():
-            results[quantity] = (None, None, None, *expected, "cannot tell")
+        if not (values[:, place] > RESOLVED * errors[:, place]).all() or not numpy.isfinite(left).all():
+            results[quantity] = (None, None, None, *expected.values(), "cannot tell")
             continue
+        of_reference = (slope_weights(passes) / values[:, place]) @ terms if quantity != "variance" else numpy.zeros(1)
         differences = []
-        for bias, slope_expected in zip(["squared_bias", "edge"], expected):
-            if slope_expected is not None:
-                off = found - slope_expected
-                differences.append((off, reach_of(off, left - predicted_slope(quantity, passes, without[0], predicted, bias))))
-        reach = reach_of(found, left)
-        results[quantity] = (found, found - reach, found + reach, *expected,
+        for bias, slope_expected in expected.items():
+            # Where the bias cannot be told, the two predictions of MSE differ in noise alone.
+            if slope_expected is None or (bias == "edge" and quantity == "mse" and results["squared_bias"][0] is None):
+                continue
+            expected_left = numpy.array([predicted_slope(quantity, passes, first, of_group, bias)
+                                         for first, of_group in zip(without[0], predicted_without)])
+            off = found - slope_expected
+            differences.append((off, reach_of(off, left - expected_left, of_reference)))
+        reach = reach_of(found, left, of_reference)
+        results[quantity] = (found, found - reach, found + reach, *expected.values(),
                              "cannot tell" if 2 * reach > WIDEST else verdict_of(differences))
     return results
 
@@ -228,8 +246,15 @@ def fits_of(ensemble, own, moments, component, window):
         of_region = {number: moments[component].get((number, region)) for number in passes}
         if None in of_region.values():    # no finite pixel
             continue
-        predicted = with_direct_light(gathered, moments, region, passes[0]) if component == "total" else gathered
-        for quantity, (found, low, high, expected, at_edges, verdict) in fit(of_region, passes, predicted).items():
+        predicted, predicted_without = gathered, [gathered] * len(ensemble.seeds)
+        if component == "total" and moments.get("direct"):
+            of_parts = [moments[part][passes[0], region] for part in ["direct", "gathered"]]
+            shares = [decomposition.decompose(part)[0] for part in of_parts]
+            shares_without = [decomposition.replicates(part)[:, 0] for part in of_parts]
+            predicted = with_direct_light(gathered, *shares, passes[0])
+            predicted_without = [with_direct_light(gathered, *left, passes[0]) for left in zip(*shares_without)]
+        for quantity, (found, low, high, expected, at_edges, verdict) in fit(of_region, passes, predicted,
+                                                                            predicted_without).items():
             smooth, edge = asymptotes(first, component)[quantity]
             table.append({
                 "experiment": first["experiment"], "scene": first["scene"], "point": ensemble.point,
@@ -335,6 +360,7 @@ def main(arguments):
         decomposition.write_table(options.results / "fits.csv", FIT_COLUMNS, table)
         best = [row for (_, component), family in families.items() if len(family) > 1
                 for row in best_alphas(family, component)]
+        (options.results / "best-alphas.csv").unlink(missing_ok=True)    # of earlier records
         if best:
             decomposition.write_table(options.results / "best-alphas.csv", BEST_COLUMNS, best)
     except (records.RecordError, OSError) as error:

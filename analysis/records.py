@@ -63,6 +63,7 @@ def read_records(results):
         records[column] = to_numbers(file, records[column], whole=column in COUNTS)
     if (records["pass"].isna() | records["seed"].isna()).any():
         raise RecordError(f"{file}: has rows without pass or seed")
+    check_settings(file, records)
     refuse_repeated_rows(file, records)
     records["method"] = method_labels(records)
     return records
@@ -113,6 +114,22 @@ def to_numbers(file, texts, whole):
         expected = "a whole number that is not negative" if whole else "a number"
         raise RecordError(f"{place(file, wrong)}: {texts.name} is \"{texts[wrong].iloc[0]}\"; expected {expected}")
     return numbers.astype(float)
+
+
+def check_settings(file, records):
+    """Throws RecordError where a run changes its settings, or has an alpha, paths or a radius that it cannot have."""
+    changing = (records.groupby("run")[SETTINGS].nunique() > 1).any(axis=1)
+    if changing.any():
+        raise RecordError(f"{file}: run {changing.index[changing.to_numpy().argmax()]} has rows with different settings")
+    alpha = to_numbers(file, records["alpha"], whole=False)
+    wrong = (alpha <= 0) | (alpha > 1) | ((records["integrator"] == "ppm") & alpha.isna())
+    if wrong.any():
+        raise RecordError(f"{place(file, wrong)}: alpha is \"{records['alpha'][wrong].iloc[0]}\"; expected a number in (0, 1]")
+    to_numbers(file, records["paths_emitted"], whole=True)
+    wrong = to_numbers(file, records["radius_mean"], whole=False) <= 0
+    if wrong.any():
+        raise RecordError(f"{place(file, wrong)}: radius_mean is \"{records['radius_mean'][wrong].iloc[0]}\"; expected a number "
+                          "above 0")
 
 
 def settings_of(records):

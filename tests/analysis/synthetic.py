@@ -33,9 +33,9 @@ def rows(mse, seeds=(1, 2, 3, 4), passes=(0, 1, 2, 4, 8, 16, 32, 64), floor=1e-6
                 unbiased = mse(seed, number, component)
                 biased = max(unbiased, 0) + floor
                 made.append({**BASE, **settings, "run": run.replace(" ", ""), "seed": str(seed), "pass": str(number),
-                             "component": component, "seconds": repr(0.01 + 0.25 * number), "mse": repr(biased),
-                             "mse_unbiased": repr(unbiased), "rmse": repr(biased ** 0.5),
-                             "reference_floor": repr(floor)})
+                             "component": component, "seconds": str(0.01 + 0.25 * number), "mse": str(biased),
+                             "mse_unbiased": str(unbiased), "rmse": str(biased ** 0.5),
+                             "reference_floor": str(floor)})
     return made
 
 

@@ -71,6 +71,6 @@ def write_records(results, points, seeds, passes=PASSES):
         for row in rows:
             row["run"] = f"{point}_seed-{row['seed']}"
             row["paths_emitted"] = str(50000 * int(row["pass"]))
-            row["radius_mean"] = repr((int(row["pass"]) + 1) ** -0.15)    # of the next pass
+            row["radius_mean"] = str((int(row["pass"]) + 1) ** -0.15)    # of the next pass
         made += rows
     synthetic.write_csv(results, made)

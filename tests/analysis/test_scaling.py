@@ -21,7 +21,7 @@ def made_up():
 
     def row(axis, value, threads, seconds, map_bytes, integrator="ppm"):
         rows.append({**dict.fromkeys(scaling.COLUMNS, "1"), "axis": axis, "value": str(value), "threads": str(threads),
-                     "integrator": integrator, "seconds": repr(seconds), "map_bytes": repr(map_bytes), "peak_rss_mib": "50"})
+                     "integrator": integrator, "seconds": str(seconds), "map_bytes": str(map_bytes), "peak_rss_mib": "50"})
     for threads, factor in [(1, 1.0), (2, 1 / 1.6)]:
         for photons in [10_000, 100_000, 1_000_000]:
             row("photons", photons, threads, 1e-6 * photons * factor, 64.0 * photons)

@@ -40,7 +40,7 @@ class Tables(unittest.TestCase):
         for row in made:
             number = max(1, int(row["pass"]))
             row.update(seconds=str(number), cpu_seconds=str(2 * number),
-                       relmse="0" if row["component"] == "emission" else repr(relmse(int(row["seed"]), number)))
+                       relmse="0" if row["component"] == "emission" else str(relmse(int(row["seed"]), number)))
         synthetic.write_csv(self.results, made)
         code, output, errors = synthetic.run(time_to_error, self.results, *arguments)
         self.assertEqual((code, errors), (0, ""))

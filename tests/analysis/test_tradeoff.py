@@ -31,8 +31,8 @@ class Tradeoff(unittest.TestCase):
             for row in synthetic.rows(lambda seed, number, _: mse(seed) * 8 / max(1, number), seeds=seeds, passes=[0, 4, 8],
                                       **settings):
                 row.update({"run": f"cornell-box_{name}_seed-{row['seed']}",
-                            "seconds": repr(seconds(int(row["seed"])) * int(row["pass"]) / 8),
-                            "cpu_seconds": repr(seconds(int(row["seed"])) * int(row["pass"]) / 8 + 1)})
+                            "seconds": str(seconds(int(row["seed"])) * int(row["pass"]) / 8),
+                            "cpu_seconds": str(seconds(int(row["seed"])) * int(row["pass"]) / 8 + 1)})
                 made.append(row)
         synthetic.write_csv(self.results, made)
 
