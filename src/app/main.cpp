@@ -17,6 +17,7 @@
 #include "app/commands.h"
 #include "app/interruption.h"
 #include "core/error.h"
+#include "core/files.h"
 #include "experiment/version.h"
 
 namespace {
@@ -25,12 +26,16 @@ constexpr int bad_input = 2;
 constexpr int internal_error = 1;
 
 /// One line that any terminal can show, however hostile the file that a message quotes: control characters become
-/// spaces, and of more than 2000 bytes the middle is left out.
+/// spaces, what is no UTF-8 question marks, and of more than 2000 bytes the middle is left out.
 std::string one_line(std::string text) {
     constexpr std::size_t longest = 2000;
     if (text.size() > longest) text.replace(longest / 2, text.size() - longest, " ... ");
     std::replace_if(
         text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+    // Control characters of two bytes, U+0080 to U+009F.
+    for (std::size_t i = 0; i + 1 < text.size(); ++i)
+        if (text[i] == '\xc2' && static_cast<unsigned char>(text[i + 1]) < 0xa0) text.replace(i, 2, "  ");
+    for (std::size_t at = 0; (at = photonlab::find_no_text(text)) != std::string::npos;) text[at] = '?';
     return text;
 }
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cstdint>
+#include <limits>
 
 #include "core/error.h"
 #include "integrators/registry.h"
@@ -23,6 +25,25 @@ Resolution parse_resolution(const std::string& text) {
     throw InputError(fmt::format("--resolution: expected WIDTHxHEIGHT in pixels, such as 640x480, got \"{}\"", text));
 }
 
+std::string require_whole_number(const std::string& text) {
+    std::uint64_t number = 0;
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
+    const bool is_sound = read.ec == std::errc() && read.ptr == text.data() + text.size();
+    return is_sound ? "" : fmt::format("expected a whole number from 0 to {}, got \"{}\"", ~std::uint64_t{0}, text);
+}
+
+std::string require_seconds(const std::string& text) {
+    double number = 0.0;
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
+    const bool is_sound = read.ec == std::errc() && read.ptr == text.data() + text.size() && number >= 0.0 &&
+                          number <= std::numeric_limits<double>::max();
+    return is_sound ? "" : fmt::format("expected a number of seconds, at least 0, got \"{}\"", text);
+}
+
+std::string require_text(const std::string& text) {
+    return text.empty() ? "expected a value" : "";
+}
+
 void MethodOptions::add_to(CLI::App& command) {
     std::string integrators;
     for (const IntegratorKind& kind : integrator_kinds())
@@ -32,7 +53,9 @@ void MethodOptions::add_to(CLI::App& command) {
         std::string meaning(field.meaning);
         if (field.name == "integrator") meaning += ": " + integrators;
         if (field.name != "max_depth") meaning += fmt::format(" [{}]", plain_text(field.write(defaults)));
-        command.add_option(std::string(field.option), texts_[std::string(field.name)], meaning)->group("Method");
+        command.add_option(std::string(field.option), texts_[std::string(field.name)], meaning)
+            ->check(require_text)
+            ->group("Method");
     }
 }
 

@@ -16,6 +16,12 @@ namespace photonlab {
 /// "640x480"; InputError for anything else.
 Resolution parse_resolution(const std::string& text);
 
+/// Checks of CLI11, which by itself takes numbers that are too large for the largest, and NaN for any: a whole number
+/// of 64 bits; a number of seconds, finite and at least 0; a text that is not empty. Empty where it is sound.
+std::string require_whole_number(const std::string& text);
+std::string require_seconds(const std::string& text);
+std::string require_text(const std::string& text);
+
 /// Options of the settings of a method, one for each field, in a group of their own.
 class MethodOptions {
 public:

@@ -72,7 +72,7 @@ void add_reference_command(CLI::App& app) {
     command->add_option("--samples-per-pixel", settings.samples_per_pixel, "sample positions, a perfect square [1]");
     command->add_option("--max-depth", options->max_depth,
                         "edges from camera to light, -1 is unlimited [the scene file's]");
-    command->add_option("--seed", settings.seed, "of all random numbers [1]")->check(CLI::NonNegativeNumber);
+    command->add_option("--seed", settings.seed, "of all random numbers [1]")->check(require_whole_number);
     command->add_option("--threads", settings.threads, "threads to use [all]; the image does not depend on it")
         ->check(CLI::Range(1, 1024));
     command->add_flag("--picture-only", settings.picture_only,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
 
@@ -106,6 +107,45 @@ void require_consistent(const RenderOptions& options) {
                          "is there already: --resume goes on from it; to begin anew, remove it or give another file");
 }
 
+/// What is written must not be what is read, nor written twice; nor replace a file of another kind, such as a mesh of
+/// the scene.
+void require_different_files(const RenderOptions& options, const std::vector<std::uint64_t>& snapshots) {
+    struct Written {
+        std::string option;
+        std::filesystem::path file;
+        std::string begins;  // how a file of this kind does
+    };
+    const std::string exr = "\x76\x2f\x31\x01";
+    std::vector<Written> written{{"-o", options.output, exr}};
+    for (const std::uint64_t pass : snapshots)
+        written.push_back({"--snapshots", snapshot_file(options.output, pass), exr});
+    if (!options.csv.empty()) written.push_back({"--csv", options.csv, "schema,"});
+    if (!options.png.empty()) written.push_back({"--png", options.png, "\x89PNG"});
+    if (!options.checkpoint.empty()) written.push_back({"--checkpoint", options.checkpoint, ""});
+
+    const auto same = [](const std::filesystem::path& a, const std::filesystem::path& b) {
+        return std::filesystem::weakly_canonical(a) == std::filesystem::weakly_canonical(b);
+    };
+    std::vector<std::filesystem::path> read{options.scene};
+    if (const std::filesystem::path reference = options.reference; !reference.empty())
+        read.insert(read.end(), {reference, reference / "half_a.exr", reference / "half_b.exr"});
+    for (std::size_t i = 0; i < written.size(); ++i) {
+        const auto& [option, file, begins] = written[i];
+        for (const std::filesystem::path& input : read)
+            if (same(file, input)) throw InputError(file.string(), option + ": is read from here; choose another file");
+        for (std::size_t before = 0; before < i; ++before)
+            if (same(file, written[before].file))
+                throw InputError(file.string(), option + ": is written by " + written[before].option +
+                                                    " already; choose another file");
+        if (!std::filesystem::is_regular_file(file) || begins.empty()) continue;
+        std::string found(begins.size(), '\0');
+        std::ifstream stream(file, std::ios::binary);
+        stream.read(found.data(), static_cast<std::streamsize>(found.size()));
+        if (stream.gcount() > 0 && found != begins)
+            throw InputError(file.string(), option + ": is there already, and is a file of another kind");
+    }
+}
+
 void render(const RenderOptions& options) {
     require_consistent(options);
     const ChosenSettings chosen = options.method.settings();
@@ -126,6 +166,7 @@ void render(const RenderOptions& options) {
             load_reference(options.reference, ReferenceSubject{scene.hash, scene.camera.width, scene.camera.height,
                                                                options.samples_per_pixel, settings.method.max_depth});
 
+    require_different_files(options, snapshots);
     // Before hours are spent: everything that is to be written can be.
     require_writable(options.output);
     for (const std::string& file : {options.csv, options.png, options.checkpoint})
@@ -233,7 +274,7 @@ void add_render_command(CLI::App& app) {
     command->add_option("-o", options->output, "image to write: linear float RGB and layers, OpenEXR")->required();
     options->method.add_to(*command);
     command->add_option("--passes", options->passes, "number of passes [32]")->check(CLI::Range(1u, 0xffffffffu));
-    command->add_option("--seed", options->seed, "of all random numbers [1]")->check(CLI::NonNegativeNumber);
+    command->add_option("--seed", options->seed, "of all random numbers [1]")->check(require_whole_number);
     command->add_option("--threads", options->threads, "threads to use [all]; the image does not depend on it")
         ->check(CLI::Range(1, 1024));
     command->add_option("--resolution", options->resolution, "WIDTHxHEIGHT in place of the scene file's");
@@ -249,7 +290,7 @@ void add_render_command(CLI::App& app) {
     command
         ->add_option("--checkpoint-seconds", options->checkpoint_seconds,
                      "work that a kill may cost, or one pass if that takes longer [30]")
-        ->check(CLI::NonNegativeNumber);
+        ->check(require_seconds);
     command->add_flag("--resume", options->resume, "go on from the checkpoint, if it is there, to the same bits");
     command->footer(
         "Example:\n  photonlab render scenes/cornell-box/scene.xml -o box.exr --integrator ppm --passes 64 "

@@ -7,6 +7,7 @@
 
 #include "app/commands.h"
 #include "app/interruption.h"
+#include "app/options.h"
 #include "experiment/experiment_file.h"
 #include "experiment/experiment_runs.h"
 
@@ -52,13 +53,14 @@ void add_run_command(CLI::App& app) {
     command->add_option("EXPERIMENT", options->experiment, "experiment file (TOML)")->required();
     command->add_option("-o", options->output, "folder for results [results/EXPERIMENT]");
     command->add_flag("--list", options->list, "print the runs with an estimate of time and memory, and run nothing");
-    command->add_option("--only", options->only, "only runs of this name, or that match this shell pattern");
+    command->add_option("--only", options->only, "only runs of this name, or that match this shell pattern")
+        ->check(require_text);
     command->add_flag("--smoke", options->smoke,
                       "everything in small: at most 4 passes, 2000 photons a pass, 2 seeds; into a folder of its own");
     command
         ->add_option("--checkpoint-seconds", options->continuation.seconds_between_saves,
                      "work that a kill may cost, or one pass if that takes longer [30]")
-        ->check(CLI::NonNegativeNumber);
+        ->check(require_seconds);
     command->add_flag("--fresh", options->continuation.fresh,
                       "begin unfinished runs anew; their checkpoints are set aside as checkpoint.old");
     command->footer("Example:\n  photonlab run experiments/demo.toml --only '*_ppm_alpha-0.7_*'");

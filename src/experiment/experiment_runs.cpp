@@ -61,7 +61,7 @@ std::string point_key(const Experiment& experiment, const ExperimentRun& run, co
          reference_key}}.dump());
 }
 
-/// True when the folder holds a run that finished with this key.
+/// True when the folder holds a run that finished with this key, and its records are as they were then.
 bool is_finished(const std::filesystem::path& folder, const std::string& key) {
     const std::filesystem::path file = folder / "run.json";
     if (!std::filesystem::exists(file) || !std::filesystem::exists(folder / "iterations.csv")) return false;
@@ -69,13 +69,29 @@ bool is_finished(const std::filesystem::path& folder, const std::string& key) {
     if (!json.is_object()) return false;
     const auto finished = json.find("finished");
     const auto stored = json.find("key");
-    return finished != json.end() && *finished == true && stored != json.end() && *stored == key;
+    const Json checksum = json.value("/checksums/iterations.csv"_json_pointer, Json());
+    return finished != json.end() && *finished == true && stored != json.end() && *stored == key &&
+           checksum == hash_file(folder / "iterations.csv");
 }
 
 /// The same, and that the ensemble has the run's images.
 bool is_made(const Experiment& experiment, const PreparedRun& run, const std::filesystem::path& results) {
     return is_finished(run.folder, run.key) &&
            (!experiment.decomposition || ensemble_of(experiment, run, results).contains(run.run->seed));
+}
+
+/// Refuses a folder that holds runs of another experiment, or of this one at its full size when it is run in small:
+/// they have the same names and would be made again.
+void require_same_experiment(const Experiment& experiment, const std::filesystem::path& results) {
+    for (const ExperimentRun& run : experiment.runs) {
+        const std::filesystem::path file = results / "runs" / run.name / "run.json";
+        if (!std::filesystem::exists(file)) continue;
+        const Json json = Json::parse(read_text_file(file), nullptr, false);
+        if (!json.is_object() || json.value("experiment", Json(experiment.name)) == experiment.name) continue;
+        throw InputError(file.string(), fmt::format("this is a run of the experiment {}, not of \"{}\"; choose another "
+                                                    "folder for the results",
+                                                    json.at("experiment").dump(), experiment.name));
+    }
 }
 
 ReferenceSubject subject_of(const Scene& scene, int samples_per_pixel, int max_depth) {
@@ -111,18 +127,19 @@ std::size_t merge_records(const Experiment& experiment, const std::filesystem::p
 }
 
 /// Refuses regions and probes outside the image.
-void require_inside(const SceneEntry& entry, const Scene& scene) {
+void require_inside(const std::filesystem::path& experiment_file, const SceneEntry& entry, const Scene& scene) {
     const int width = scene.camera.width;
     const int height = scene.camera.height;
     for (const Region& region : entry.regions)
         if (region.right > width || region.bottom > height)
-            throw InputError(entry.file.string(),
-                             fmt::format("region {}: expected pixels inside {}x{}, got up to {} {}", region.name, width,
-                                         height, region.right, region.bottom));
+            throw InputError(experiment_file.string(),
+                             fmt::format("region {} of {}: expected pixels inside {}x{}, got up to {} {}", region.name,
+                                         entry.name, width, height, region.right, region.bottom));
     for (const Probe& probe : entry.probes)
         if (probe.x >= width || probe.y >= height)
-            throw InputError(entry.file.string(), fmt::format("probe {}: expected a pixel inside {}x{}, got {} {}",
-                                                              probe.name, width, height, probe.x, probe.y));
+            throw InputError(experiment_file.string(),
+                             fmt::format("probe {} of {}: expected a pixel inside {}x{}, got {} {}", probe.name,
+                                         entry.name, width, height, probe.x, probe.y));
 }
 
 /// What is not finished, in groups that share their photons and hit points. They are in the order that they would have
@@ -268,7 +285,7 @@ PreparedExperiment prepare_experiment(const Experiment& experiment, const std::f
         std::optional<Scene>& scene = prepared.scenes[run->scene];
         if (!scene) {
             scene = build_scene(load_scene_file(entry.file), entry.resolution);
-            require_inside(entry, *scene);
+            require_inside(experiment.file, entry, *scene);
         }
 
         PreparedRun ready;
@@ -301,6 +318,7 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
     ExperimentOutcome outcome;
     outcome.records = results / "iterations.csv";
     require_writable(outcome.records);
+    require_same_experiment(experiment, results);
     for (const PreparedRun& ready : prepared.runs) {
         const Checkpoint checkpoint = checkpoint_of(experiment, ready);
         if (ready.finished) {  // perhaps by a process that was killed before it had cleared up

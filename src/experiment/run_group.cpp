@@ -8,6 +8,7 @@
 
 #include "core/file_lock.h"
 #include "core/files.h"
+#include "core/hash.h"
 #include "experiment/progress.h"
 #include "experiment/recorder.h"
 #include "experiment/run_record.h"
@@ -117,9 +118,9 @@ std::string finish(const RunGroup& group, OpenRun& run, const RunState& last) {
         const FileLock lock = FileLock::wait_for(group.results / "ensembles" / (run.prepared->run->point + ".lock"));
         ensemble_of(group.experiment, *run.prepared, group.results).add(run.prepared->run->seed, run.recorded_images);
     }
-    write_text_file(
-        folder / "run.json",
-        run_json(run.record, run.recorder, last, group.scene, group.hit_points, group.reference).dump(2) + "\n");
+    Json json = run_json(run.record, run.recorder, last, group.scene, group.hit_points, group.reference);
+    json["checksums"] = {{"iterations.csv", hash_file(folder / "iterations.csv")}};
+    write_text_file(folder / "run.json", json.dump(2) + "\n");
     discard(run.checkpoint);
 
     std::string line = fmt::format("finished {} in {}", run.prepared->run->name, describe_duration(last.times.total()));

@@ -144,6 +144,12 @@ struct ToUnitBox {
     float length(double scene_units) const { return static_cast<float>(scene_units / unit_length); }
 };
 
+/// Embree takes no ray from where a float's square overflows, at 1.8e19; NaN is not traceable either.
+bool is_traceable(const Vector& position) {
+    constexpr float farthest = 1e18f;
+    return std::abs(position.x) <= farthest && std::abs(position.y) <= farthest && std::abs(position.z) <= farthest;
+}
+
 /// How far apart neighbouring doubles are at the farthest coordinate of the box, as a share of its size: where things
 /// are in the scene cannot be said any better.
 double coarseness_of(const Bounds& box, double size) {
@@ -170,10 +176,10 @@ ToUnitBox make_unit_box(const Bounds& box, const std::string& place) {
                                centre.x, centre.y, centre.z));
     if (coarseness_of(box, unit_length) > worst_coarseness)
         throw InputError(
-            place, fmt::format("the scene is {:g} scene units large around ({:g} {:g} {:g}), where neighbouring doubles "
-                               "are {:.2g} of its size apart; expected at most {:g}: move it closer to the origin",
-                               largest, centre.x, centre.y, centre.z, coarseness_of(box, unit_length),
-                               worst_coarseness));
+            place,
+            fmt::format("the scene is {:g} scene units large around ({:g} {:g} {:g}), where neighbouring doubles "
+                        "are {:.2g} of its size apart; expected at most {:g}: move it closer to the origin",
+                        largest, centre.x, centre.y, centre.z, coarseness_of(box, unit_length), worst_coarseness));
     return {centre, unit_length};
 }
 
@@ -264,7 +270,7 @@ Camera make_camera(const CameraDescription& description, std::optional<Resolutio
     // Written so that NaN fails as well.
     if (!is_finite(position) || !(std::abs(left.cross(up).dot(forward)) > 0.0))
         throw InputError("camera: to_world: expected an invertible transform with finite values");
-    if (!is_finite(to_unit_box(position)))
+    if (!is_traceable(to_unit_box(position)))
         throw InputError(
             fmt::format("camera: position {} {} {} is too far from the scene, which is {} scene units large",
                         position.x, position.y, position.z, to_unit_box.unit_length));
@@ -297,7 +303,7 @@ void add_emitters(Scene& scene, const SceneDescription& description, const ToUni
     for (const PointLightDescription& light : description.point_lights) {
         const ColorD intensity = light.intensity / unit_area;
         const Vector position = to_unit_box(light.position);
-        if (!is_finite(position))
+        if (!is_traceable(position))
             throw InputError(
                 light.place,
                 fmt::format("position {} {} {} is too far from the scene, which is {} scene units large",
@@ -352,8 +358,9 @@ Scene build_scene(const SceneDescription& description, std::optional<Resolution>
     scene.notes = description.notes;
     if (const double coarseness = bounds.is_empty() ? 0.0 : coarseness_of(bounds, to_unit_box.unit_length);
         coarseness > noted_coarseness)
-        scene.notes.push_back(fmt::format(
-            "so far from the origin coordinates are rounded to {:.2g} of the scene's size: move it closer", coarseness));
+        scene.notes.push_back(
+            fmt::format("so far from the origin coordinates are rounded to {:.2g} of the scene's size: move it closer",
+                        coarseness));
     scene.unit_length = to_unit_box.unit_length;
     scene.centre = to_unit_box.centre;
     scene.materials = description.materials;

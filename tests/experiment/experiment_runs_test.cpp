@@ -130,6 +130,31 @@ TEST_F(ExperimentRuns, AnInterruptedRunIsMadeAgain) {
     EXPECT_EQ(read_rows(folder / "iterations.csv").size(), 16u);
 }
 
+TEST_F(ExperimentRuns, ARunWhoseRecordsAreDamagedIsMadeAgain) {
+    run();
+    const std::filesystem::path file = results() / "runs/walls_path_seed-1/iterations.csv";
+    const std::string rows = read_text_file(file);
+    for (const std::string& damaged :
+         {rows.substr(0, rows.size() / 2), rows.substr(0, rows.rfind('\n', rows.size() - 2) + 1)}) {
+        write_text_file(file, damaged);
+        EXPECT_EQ(run().ran, 1u);
+        EXPECT_EQ(read_rows(file).size(), 16u);
+        EXPECT_EQ(read_rows(results() / "iterations.csv").size(), 8u * 16u);
+    }
+}
+
+TEST_F(ExperimentRuns, AFolderOfAnotherExperimentIsRefused) {
+    run();
+    const Experiment small = read_experiment(folder_ / "tiny.toml", SmokeLimits{});
+    const std::string before = read_text_file(results() / "iterations.csv");
+    const std::string message =
+        message_of([&] { run_experiment(small, prepare_experiment(small, results()), results(), {}); });
+    EXPECT_NE(message.find("this is a run of the experiment \"tiny\", not of \"tiny-smoke\"; choose another folder"),
+              std::string::npos)
+        << message;
+    EXPECT_EQ(read_text_file(results() / "iterations.csv"), before);
+}
+
 TEST_F(ExperimentRuns, OnlyTheSelectedRunsAreMade) {
     EXPECT_EQ(run("", "walls_ppm_seed-1").ran, 1u);
     const ExperimentOutcome outcome = run("", "*_seed-2");
@@ -236,11 +261,12 @@ TEST_F(ExperimentRuns, RefusesRegionsAndProbesOutsideTheImage) {
         return message_of([&] { prepare_experiment(experiment, results()); });
     };
     EXPECT_EQ(refusal("regions = { all = [0, 0, 12, 8] }"), "");
-    EXPECT_NE(
-        refusal("regions = { low = [0, 0, 12, 9] }").find("region low: expected pixels inside 12x8, got up to 12 9"),
-        std::string::npos);
-    EXPECT_NE(refusal("probes = { right = [12, 0] }").find("probe right: expected a pixel inside 12x8, got 12 0"),
+    EXPECT_NE(refusal("regions = { low = [0, 0, 12, 9] }")
+                  .find("region low of walls: expected pixels inside 12x8, got up to 12 9"),
               std::string::npos);
+    EXPECT_NE(
+        refusal("probes = { right = [12, 0] }").find("probe right of walls: expected a pixel inside 12x8, got 12 0"),
+        std::string::npos);
 }
 
 }  // namespace

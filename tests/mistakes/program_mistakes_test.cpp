@@ -116,6 +116,11 @@ TEST_F(ProgramMistakes, OptionsAreRefused) {
                                       "--threads 99999",
                                       "--seed -1",
                                       "--seed x",
+                                      "--seed 18446744073709551616",
+                                      "--seed ''",
+                                      "--alpha ''",
+                                      "--kernel ''",
+                                      "--checkpoint-seconds nan",
                                       "--max-depth 0",
                                       "--snapshots 99",
                                       "--snapshots x",
@@ -123,6 +128,29 @@ TEST_F(ProgramMistakes, OptionsAreRefused) {
         EXPECT_NE(refusal_of("render " + box + options), "") << options;
     for (const std::string arguments : {"", "rendr", "render", "run", "compare", "info", "info a.xml b.xml"})
         EXPECT_NE(refusal_of(arguments), "") << arguments;
+}
+
+TEST_F(ProgramMistakes, FilesThatAreReadOrWrittenAlreadyAreNotWritten) {
+    const std::string scene = "<scene version='3.0.0'><sensor type='perspective'/></scene>";
+    folder_.write("a.xml", scene);
+    folder_.write("mesh.obj", "v 0 0 0\n");
+    write_exr(folder_ / "half.exr", Image{2, 2, {{"total", std::vector<Color>(4, Color(0.5f))}}});
+    const std::string render = "render a.xml --passes 2 --resolution 2x2 ";
+    for (const auto& [arguments, message] : std::vector<std::pair<std::string, std::string>>{
+             {"-o a.xml", "a.xml: -o: is read from here"},
+             {"-o out.exr --csv ./a.xml", "./a.xml: --csv: is read from here"},
+             {"-o half.exr --reference half.exr", "half.exr: -o: is read from here"},
+             {"-o mesh.obj", "mesh.obj: -o: is there already, and is a file of another kind"},
+             {"-o out.exr --csv mesh.obj", "mesh.obj: --csv: is there already"},
+             {"-o out.exr --csv out.exr", "out.exr: --csv: is written by -o already"},
+             {"-o out.exr --png out.exr", "out.exr: --png: is written by -o already"},
+             {"-o out.exr --checkpoint out.exr", "out.exr: --checkpoint: is written by -o already"},
+             {"-o out.exr --snapshots 1 --csv out-pass-1.exr",
+              "out-pass-1.exr: --csv: is written by --snapshots already"}})
+        EXPECT_EQ(refusal_of(render + arguments).substr(0, message.size()), message) << arguments;
+    EXPECT_EQ(read_text_file(folder_ / "a.xml"), scene);
+    EXPECT_EQ(run_program(folder_.path(), render + "-o out.exr --csv out.csv --png out.png").code, 0);
+    EXPECT_EQ(run_program(folder_.path(), render + "-o out.exr --csv out.csv --png out.png").code, 0) << "once more";
 }
 
 TEST_F(ProgramMistakes, AreNotScenesWithoutLightOrSurfaceWhichAreBlackAndSayWhy) {
@@ -147,6 +175,13 @@ TEST_F(ProgramMistakes, MessagesAreOneLineThatATerminalCanShow) {
     const std::string message = refusal_of("info '" + folder_.write("bell.xml", bell).filename().string() + "'");
     for (const char c : message) EXPECT_GE(static_cast<unsigned char>(c), 0x20u);
     EXPECT_EQ(message.substr(0, 26), "bell.xml:2: unknown shape ");
+
+    // Bytes that are no UTF-8, and a control character of two.
+    folder_.write("mesh.obj", "v 0 0 0\n\x9b[2J\xc2\x9bx\n");
+    folder_.write("mesh.xml",
+                  "<scene><sensor type='perspective'/><shape type='obj'><string name='filename' value='mesh.obj'/>"
+                  "</shape></scene>");
+    EXPECT_EQ(refusal_of("info mesh.xml").substr(0, 44), "mesh.obj:2: unknown keyword \"?[2J  x\"; known");
 
     const std::string long_name = "<scene>\n<shape type='" + std::string(60'000, 'a') + "'/></scene>";
     EXPECT_LT(refusal_of("info '" + folder_.write("long.xml", long_name).filename().string() + "'").size(), 2100u);
