@@ -17,6 +17,7 @@
 #include "experiment/recorder.h"
 #include "experiment/reference.h"
 #include "experiment/time_estimate.h"
+#include "integrators/registry.h"
 #include "experiment/version.h"
 #include "scene/loader.h"
 #include "transport/plain_images.h"
@@ -291,6 +292,11 @@ PreparedExperiment prepare_experiment(const Experiment& experiment, const std::f
         PreparedRun ready;
         ready.run = run;
         ready.settings.method = resolve(run->settings, scene->max_depth);
+        try {
+            require_resolvable(ready.settings.method, *scene);
+        } catch (const InputError& error) {
+            throw InputError(experiment.file.string(), fmt::format("run {}: {}", run->name, error.what()));
+        }
         ready.settings.seed = run->seed;
         ready.settings.passes = run->plan.passes;
         ready.settings.threads = experiment.threads;

@@ -117,7 +117,11 @@ std::optional<ErrorMetrics> judge(const Image& image, const Reference& reference
         for (std::size_t i = 0; i < pixels.mean.size(); ++i)
             pixels.mean[i] = (pixels.half_a[i] + pixels.half_b[i]) * 0.5;
     }
-    return compare(judged, pixels);
+    try {
+        return compare(judged, pixels);
+    } catch (const InputError& error) {
+        throw InputError(reference.path.string(), error.what());
+    }
 }
 
 }  // namespace photonlab

@@ -99,12 +99,16 @@ void require_resolvable(std::string_view name, const std::optional<double>& radi
 
 }  // namespace
 
+void require_resolvable(const MethodSettings& settings, const Scene& scene) {
+    require_resolvable("radius", settings.radius, scene);
+    require_resolvable("max_radius", settings.max_radius, scene);
+    require_resolvable("caustic_radius", settings.caustic_radius, scene);
+    require_resolvable("caustic_max_radius", settings.caustic_max_radius, scene);
+}
+
 std::unique_ptr<Integrator> make_integrator(const MethodSettings& settings, const IntegratorContext& context) {
     require_valid(settings);
-    require_resolvable("radius", settings.radius, context.scene);
-    require_resolvable("max_radius", settings.max_radius, context.scene);
-    require_resolvable("caustic_radius", settings.caustic_radius, context.scene);
-    require_resolvable("caustic_max_radius", settings.caustic_max_radius, context.scene);
+    require_resolvable(settings, context.scene);
     return find_integrator_kind(settings.integrator).make(settings, context);
 }
 

@@ -31,6 +31,9 @@ bool uses_setting(const MethodSettings& settings, std::string_view field);
 /// Throws InputError when a value is out of its range.
 void require_valid(const MethodSettings& settings);
 
+/// Throws InputError when a radius is out of what can be told in the scene.
+void require_resolvable(const MethodSettings& settings, const Scene& scene);
+
 /// Checks the settings and makes the integrator they name.
 std::unique_ptr<Integrator> make_integrator(const MethodSettings& settings, const IntegratorContext& context);
 

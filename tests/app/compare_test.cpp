@@ -62,8 +62,11 @@ TEST_F(Compare, OneImageIsAReferenceOfUnknownNoise) {
     EXPECT_NE(said.find("reference_floor  not known: the reference has no halves"), std::string::npos) << said;
 }
 
-TEST_F(Compare, RefusesOtherSizesAndMissingLayers) {
+TEST_F(Compare, RefusesOtherSizesMissingLayersAndReferencesThatAreNotFinite) {
     std::string said;
+    write_exr(folder_ / "hot.exr", {.width = 2, .height = 1, .layers = {{"total", {Color(1.0f), Color(infinity)}}}});
+    EXPECT_EQ(run_program({"compare", (folder_ / "hot.exr").string(), (folder_ / "hot.exr").string()}, said), 2);
+    EXPECT_NE(said.find("hot.exr: the reference is not finite at pixel 1"), std::string::npos) << said;
     Image image{.width = 3, .height = 2, .layers = {{"total", std::vector<Color>(6, Color(1.0f))}}};
     write_exr(folder_ / "image.exr", image);
     EXPECT_EQ(run_program(compare(), said), 2);

@@ -165,6 +165,13 @@ TEST_F(ExperimentRuns, OnlyTheSelectedRunsAreMade) {
         << message;
 }
 
+TEST_F(ExperimentRuns, ARadiusThatTheSceneCannotResolveIsRefusedBeforeAnythingRuns) {
+    const std::string message = message_of([&] { run("radius = 1e-20\n"); });
+    EXPECT_NE(message.find("tiny.toml: run walls_"), std::string::npos) << message;
+    EXPECT_NE(message.find("radius: expected from 1e-07 to 1e+18 of the scene"), std::string::npos) << message;
+    EXPECT_FALSE(std::filesystem::exists(results()));
+}
+
 TEST_F(ExperimentRuns, AReferenceOfAnotherDepthIsRefusedBeforeAnythingRuns) {
     const std::string message = message_of([&] { run("max_depth = 4\n"); });
     EXPECT_NE(message.find("max_depth is 5 in the reference and 4 here"), std::string::npos) << message;
