@@ -3,6 +3,7 @@
 Statistical claims use fixed seeds; where a mean is compared, it is within 4 standard errors (chance 6e-5 a claim)."""
 
 import csv
+import json
 import tempfile
 import unittest
 from pathlib import Path
@@ -12,6 +13,7 @@ import synthetic
 
 try:
     import decomposition
+    import fits
     import pictures
     import synthetic_ensembles as made
 except ImportError as error:
@@ -203,6 +205,40 @@ class Files(unittest.TestCase):
         (folder / "ensemble.json").write_text(whole)
         (folder / "slot-07.exr").write_bytes((folder / "slot-00.exr").read_bytes())
         self.assertIn("expected each seed in one slot", refusal())
+
+    def write_small(self):
+        passes = [1, 4, 8, 16]
+        made.write_ensemble(self.results, "box", [1, 2, 3], lambda n: 0.0, lambda n: 0.1, self.random, passes=passes)
+        made.write_records(self.results, {"box": {}}, [1, 2, 3], passes=passes)
+
+    def test_a_damaged_description_is_refused_by_name(self):
+        self.write_small()
+        file = self.results / "ensembles" / "box" / "ensemble.json"
+        sound = json.loads(file.read_text(encoding="utf-8"))
+        for key, value in [("regions", {"left": [-20, 0, 20, 10]}), ("regions", {"none": [5, 0, 5, 10]}),
+                           ("regions", {"reversed": [9, 0, 3, 10]}), ("regions", {"image": [0, 0, 4, 4]}),
+                           ("regions", {"short": [0, 0, 4]}), ("regions", {"text": "abcd"}), ("regions", [1]), ("passes", None),
+                           ("passes", [1, 1]), ("passes", [0.5]), ("reference", "x"), ("reference", {}),
+                           ("reference", {"path": 5}), ("working_directory", 5), ("photons_carry_direct", "no"), ("point", 3)]:
+            file.write_text(json.dumps({**sound, key: value}), encoding="utf-8")
+            for script in [decomposition, fits]:
+                code, _, errors = synthetic.run(script, self.results)
+                self.assertEqual((code, errors.count("\n")), (2, 1), (key, value, errors))
+                self.assertIn(str(file.parent), errors)
+        file.write_text("[]", encoding="utf-8")
+        self.assertEqual(synthetic.run(decomposition, self.results)[0], 2)
+
+    def test_damaged_records_are_refused_with_their_line(self):
+        self.write_small()
+        with open(self.results / "iterations.csv", newline="", encoding="utf-8") as stream:
+            sound = list(csv.DictReader(stream))
+        for column, value in [("alpha", "abc"), ("alpha", ""), ("alpha", "nan"), ("alpha", "2"), ("paths_emitted", "abc"),
+                              ("radius_mean", "0"), ("radius_mean", "x"), ("schedule", "other")]:
+            synthetic.write_csv(self.results, [{**row, column: value} if place == 3 else row for place, row in enumerate(sound)])
+            for script in [decomposition, fits]:
+                code, _, errors = synthetic.run(script, self.results)
+                self.assertEqual((code, errors.count("\n")), (2, 1), (column, value, errors))
+                self.assertIn("iterations.csv:", errors)
 
     def test_a_point_that_is_not_in_the_records_is_left_out_in_words(self):
         for point in ["box_ppm", "box_old"]:
