@@ -176,9 +176,7 @@ def fit(moments, passes, predicted, predicted_without):
 
     results = {}
     for place, quantity in enumerate(decomposition.QUANTITIES):
-        def predicted_by(bias):
-            return predicted_slope(quantity, passes, values[0], predicted, bias)
-        expected = {bias: predicted_by(bias) for bias in ["squared_bias", "edge"]}
+        expected = {bias: predicted_slope(quantity, passes, values[0], predicted, bias) for bias in ["squared_bias", "edge"]}
         found = slope(passes, values[:, place])
         left = slope(passes, without[:, :, place].T)
         if not (values[:, place] > RESOLVED * errors[:, place]).all() or not numpy.isfinite(left).all():
