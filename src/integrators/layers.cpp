@@ -65,10 +65,11 @@ void DirectLight::add_samples(std::uint64_t pass, std::size_t block, std::vector
     std::array<ColorD, hit_points_per_block> sum_of;
     sum_of.fill(ColorD(0.0));
     WaitingConnections waiting;
+    RandomStreams streams(context_.seed, context_.direct_purpose, pass);
     for (std::size_t i = range.begin; i < range.end; ++i) {
         const HitPoint point = points[i];
         if (!depth_allows(max_depth_, point.camera_edges + 1u)) continue;
-        RandomStream random(context_.seed, context_.direct_purpose, pass, i);
+        RandomStream random = streams[i];
         const Surface surface = surface_at(context_.scene, point);
         for (int sample = 0; sample < samples_; ++sample) {
             const auto connection = draw_connection(context_.scene, surface, point.outgoing, random);

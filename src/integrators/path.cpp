@@ -128,8 +128,9 @@ private:
         const HitPointList& points = context_.hit_points.points;
         parallel_for(block_count(points.size(), hit_points_per_block), context_.threads, [&](std::size_t block) {
             const BlockRange range = block_range(block, points.size(), hit_points_per_block);
+            RandomStreams streams(context_.seed, context_.path_purpose, pass);
             for (std::size_t i = range.begin; i < range.end; ++i) {
-                RandomStream random(context_.seed, context_.path_purpose, pass, i);
+                RandomStream random = streams[i];
                 const PathSample path = trace_path(context_.scene, points[i], max_depth_, random);
                 sums[i].direct += path.direct;
                 sums[i].gathered += path.gathered;

@@ -26,9 +26,7 @@ float adjoint_correction(const Surface& surface, const Vector& arriving, const V
            std::abs(arriving.dot(geometric) * leaving.dot(shading));
 }
 
-void trace_path(const Scene& scene, const PhotonSettings& settings, std::uint64_t pass, std::uint64_t index,
-                PhotonPass& result) {
-    RandomStream random(settings.seed, settings.purpose, pass, index);
+void trace_path(const Scene& scene, const PhotonSettings& settings, RandomStream random, PhotonPass& result) {
     const std::uint32_t emitter = choose_emitter(scene, random.next_double());
     const Imath::V2f u_position = random.next_2d();
     const double u_triangle = random.next_double();
@@ -116,8 +114,9 @@ PhotonPass trace_photons(const Scene& scene, const PhotonSettings& settings, std
         const std::size_t in_round = std::min(round.size(), blocks - first);
         parallel_for(in_round, threads, [&](std::size_t slot) {
             const BlockRange range = block_range(first + slot, settings.paths, block_size);
+            RandomStreams streams(settings.seed, settings.purpose, pass);
             for (std::size_t index = range.begin; index < range.end; ++index)
-                trace_path(scene, settings, pass, index, round[slot]);
+                trace_path(scene, settings, streams[index], round[slot]);
         });
         if (first == 0) result.photons.reserve(expected_photons(round, blocks));
         for (std::size_t slot = 0; slot < in_round; ++slot) move_to_end(result, round[slot]);
