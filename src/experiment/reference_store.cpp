@@ -148,7 +148,8 @@ public:
                   {{std::string(key_attribute), key_},
                    {std::string(seed_attribute), std::to_string(seed_)},
                    {std::string(method_attribute), describe_method(method_)},
-                   {std::string(samples_attribute), std::to_string(samples())}});
+                   {std::string(samples_attribute), std::to_string(samples())}},
+                  threads_);
         return hash_file(file_);
     }
 

@@ -196,8 +196,16 @@ std::vector<Color> rounded_total(const Image& image) {
     return sum;
 }
 
+/// OpenEXR takes its threads from one pool of the process, which is filled here only while a file is compressed.
+struct OpenExrThreads {
+    explicit OpenExrThreads(int threads) { Imf::setGlobalThreadCount(threads > 1 ? threads : 0); }
+    ~OpenExrThreads() { Imf::setGlobalThreadCount(0); }
+    OpenExrThreads(const OpenExrThreads&) = delete;
+    OpenExrThreads& operator=(const OpenExrThreads&) = delete;
+};
+
 // The file in memory: OpenEXR writes its table of offsets in a destructor, where a full disk cannot be reported.
-std::string encode(const Image& image, const Metadata& metadata) {
+std::string encode(const Image& image, const Metadata& metadata, int threads) {
     Imf::Header header(image.width, image.height);
     header.compression() = Imf::ZIP_COMPRESSION;
     for (const auto& [name, value] : metadata) {
@@ -226,6 +234,7 @@ std::string encode(const Image& image, const Metadata& metadata) {
 
     Imf::StdOSStream stream;
     {
+        const OpenExrThreads pool(threads);
         Imf::OutputFile output(stream, header);
         output.setFrameBuffer(frame);
         output.writePixels(image.height);
@@ -235,7 +244,7 @@ std::string encode(const Image& image, const Metadata& metadata) {
 
 }  // namespace
 
-void write_exr(const std::filesystem::path& file, const Image& image, const Metadata& metadata) {
+void write_exr(const std::filesystem::path& file, const Image& image, const Metadata& metadata, int threads) {
     assert(image.width > 0 && image.height > 0 && !image.layers.empty());
     for (const Layer& layer : image.layers) {
         assert(layer.pixels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
@@ -245,7 +254,7 @@ void write_exr(const std::filesystem::path& file, const Image& image, const Meta
 
     std::string bytes;
     try {
-        bytes = encode(image, metadata);
+        bytes = encode(image, metadata, threads);
     } catch (const std::exception& error) {
         throw InputError(file.string(), std::string("cannot be written: ") + error.what());
     }

@@ -20,8 +20,9 @@ using Metadata = std::map<std::string, std::string>;  ///< attribute name to val
 
 /// Writes to a temporary name beside `file` and renames, so that a half-written file never has the final name.
 /// `image` has at least one layer; one layer called "total" is written as R, G, B alone. Values that are not finite
-/// are written as they are. Throws InputError with the file's name when it cannot be written.
-void write_exr(const std::filesystem::path& file, const Image& image, const Metadata& metadata = {});
+/// are written as they are. `threads` compress it; the file does not depend on how many. Throws InputError with the
+/// file's name when it cannot be written.
+void write_exr(const std::filesystem::path& file, const Image& image, const Metadata& metadata = {}, int threads = 1);
 
 /// Reads an image. Layers are those named by `photonlab.layers`, in that order; in a file without it (another
 /// renderer's), R, G, B become one layer called "total". Channels may be float, half or uint, the data window

@@ -64,6 +64,20 @@ TEST(RandomStream, RepeatsItself) {
     for (int i = 0; i < 100; ++i) ASSERT_EQ(first.next_bits(), second.next_bits());
 }
 
+TEST(RandomStreams, HandOutWhatEachStreamAloneDoes) {
+    const std::uint64_t seed = 0x0123456789abcdefu;
+    const std::uint64_t high = std::uint64_t{1} << 32;
+    RandomStreams streams(seed, RandomPurpose::Test, 9);
+    // Neighbours, jumps back and forth, both sides of where 64 end and where an index takes more than 32 bits.
+    for (const std::uint64_t index :
+         {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{63}, std::uint64_t{64}, std::uint64_t{1000},
+          std::uint64_t{2}, high - 1, high, high + 1, (high << 24) - 1}) {
+        RandomStream together = streams[index];
+        RandomStream alone(seed, RandomPurpose::Test, 9, index);
+        for (int i = 0; i < 50; ++i) ASSERT_EQ(together.next_bits(), alone.next_bits()) << index << ", number " << i;
+    }
+}
+
 TEST(RandomStream, StaysBelowOne) {
     RandomStream random = test_stream();
     for (int i = 0; i < 1'000'000; ++i) {

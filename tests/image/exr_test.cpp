@@ -17,6 +17,7 @@
 #include <iterator>
 
 #include "core/error.h"
+#include "core/hash.h"
 #include "core/random.h"
 #include "image/metrics.h"
 #include "image/png.h"
@@ -126,6 +127,14 @@ void expect_foreign_values(const Image& image) {
             for (int channel = 0; channel < 3; ++channel)
                 EXPECT_EQ(image.layers[0].pixels[static_cast<std::size_t>(4 * y + x)][channel],
                           ForeignFile::value(x, y, channel));
+}
+
+TEST(Exr, TheFileDoesNotDependOnThreads) {
+    const Image image = random_image(70, 100);  // several blocks of 16 lines, the last one cut
+    const ScratchFolder folder;
+    write_exr(folder / "one.exr", image, {}, 1);
+    write_exr(folder / "three.exr", image, {}, 3);
+    EXPECT_EQ(hash_file(folder / "one.exr"), hash_file(folder / "three.exr"));
 }
 
 TEST(Exr, LayersComeBackToTheBitInTheirOrder) {
