@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -123,20 +124,20 @@ void require_different_files(const RenderOptions& options, const std::vector<std
     if (!options.png.empty()) written.push_back({"--png", options.png, "\x89PNG"});
     if (!options.checkpoint.empty()) written.push_back({"--checkpoint", options.checkpoint, ""});
 
-    const auto same = [](const std::filesystem::path& a, const std::filesystem::path& b) {
-        return std::filesystem::weakly_canonical(a) == std::filesystem::weakly_canonical(b);
+    constexpr const char* input = "";  // in place of an option
+    std::map<std::filesystem::path, std::string> taken;
+    const auto take = [&](const std::filesystem::path& file, const std::string& by) {
+        return taken.try_emplace(std::filesystem::weakly_canonical(file), by);
     };
-    std::vector<std::filesystem::path> read{options.scene};
+    take(options.scene, input);
     if (const std::filesystem::path reference = options.reference; !reference.empty())
-        read.insert(read.end(), {reference, reference / "half_a.exr", reference / "half_b.exr"});
-    for (std::size_t i = 0; i < written.size(); ++i) {
-        const auto& [option, file, begins] = written[i];
-        for (const std::filesystem::path& input : read)
-            if (same(file, input)) throw InputError(file.string(), option + ": is read from here; choose another file");
-        for (std::size_t before = 0; before < i; ++before)
-            if (same(file, written[before].file))
-                throw InputError(file.string(), option + ": is written by " + written[before].option +
-                                                    " already; choose another file");
+        for (const auto& file : {reference, reference / "half_a.exr", reference / "half_b.exr"}) take(file, input);
+    for (const auto& [option, file, begins] : written) {
+        if (const auto [at, is_new] = take(file, option); !is_new)
+            throw InputError(file.string(),
+                             option + ": is " +
+                                 (at->second == input ? "read from here" : "written by " + at->second + " already") +
+                                 "; choose another file");
         if (!std::filesystem::is_regular_file(file) || begins.empty()) continue;
         std::string found(begins.size(), '\0');
         std::ifstream stream(file, std::ios::binary);

@@ -80,7 +80,7 @@ private:
 };
 
 /// The streams of all indices, for loops over neighbours: the first numbers of 64 streams are made together, in a plain
-/// loop that a compiler turns into vectors, which takes a tenth of the time.
+/// loop that a compiler turns into vectors, which takes a fifth of the time.
 class RandomStreams {
 public:
     RandomStreams(std::uint64_t seed, RandomPurpose purpose, std::uint64_t pass)

@@ -17,8 +17,8 @@
 #include "experiment/recorder.h"
 #include "experiment/reference.h"
 #include "experiment/time_estimate.h"
-#include "integrators/registry.h"
 #include "experiment/version.h"
+#include "integrators/registry.h"
 #include "scene/loader.h"
 #include "transport/plain_images.h"
 
