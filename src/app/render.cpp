@@ -240,11 +240,10 @@ void render(const RenderOptions& options) {
             };
             if (recorder && is_in(recorded)) recorder->record(state, image);
             if (is_in(snapshots))
-                write_exr(snapshot_file(options.output, state.pass), image, image_metadata(identity, state, scene),
-                          options.threads);
+                write_exr(snapshot_file(options.output, state.pass), image, image_metadata(identity, state, scene));
             if (state.pass != options.passes) return;
             shown = state;
-            write_exr(options.output, image, image_metadata(identity, state, scene), options.threads);
+            write_exr(options.output, image, image_metadata(identity, state, scene));
             if (!options.png.empty()) write_png(options.png, image.width, image.height, total(image));
             if (reference) errors = judge(image, *reference, total_component, photons_carry_direct(settings.method));
         },

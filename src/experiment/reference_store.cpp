@@ -149,7 +149,7 @@ public:
                    {std::string(seed_attribute), std::to_string(seed_)},
                    {std::string(method_attribute), describe_method(method_)},
                    {std::string(samples_attribute), std::to_string(samples())}},
-                  threads_);
+                  ExrCompression::Small);
         return hash_file(file_);
     }
 

@@ -207,7 +207,7 @@ GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options
             }
             if (contains(plan.snapshots, state.pass))
                 write_exr(run.prepared->folder / "snapshots" / snapshot_name(state.pass), image,
-                          image_metadata(run.recorder.identity(), state, group.scene), group.experiment.threads);
+                          image_metadata(run.recorder.identity(), state, group.scene));
         },
         on_pass,
         [&](std::size_t method, std::uint64_t pass, const Integrator& integrator) {

@@ -9,7 +9,6 @@
 #include <OpenEXR/ImfStdIO.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTestFile.h>
-#include <OpenEXR/ImfThreading.h>
 #include <OpenEXR/ImfTileDescription.h>
 #include <OpenEXR/ImfVersion.h>
 
@@ -196,18 +195,10 @@ std::vector<Color> rounded_total(const Image& image) {
     return sum;
 }
 
-/// OpenEXR takes its threads from one pool of the process, which is filled here only while a file is compressed.
-struct OpenExrThreads {
-    explicit OpenExrThreads(int threads) { Imf::setGlobalThreadCount(threads > 1 ? threads : 0); }
-    ~OpenExrThreads() { Imf::setGlobalThreadCount(0); }
-    OpenExrThreads(const OpenExrThreads&) = delete;
-    OpenExrThreads& operator=(const OpenExrThreads&) = delete;
-};
-
 // The file in memory: OpenEXR writes its table of offsets in a destructor, where a full disk cannot be reported.
-std::string encode(const Image& image, const Metadata& metadata, int threads) {
+std::string encode(const Image& image, const Metadata& metadata, ExrCompression compression) {
     Imf::Header header(image.width, image.height);
-    header.compression() = Imf::ZIP_COMPRESSION;
+    header.compression() = compression == ExrCompression::Fast ? Imf::RLE_COMPRESSION : Imf::ZIP_COMPRESSION;
     for (const auto& [name, value] : metadata) {
         if (is_reserved(header, name)) throw InputError("metadata cannot be called \"" + name + "\": OpenEXR uses it");
         header.insert(name, Imf::StringAttribute(value));
@@ -234,7 +225,6 @@ std::string encode(const Image& image, const Metadata& metadata, int threads) {
 
     Imf::StdOSStream stream;
     {
-        const OpenExrThreads pool(threads);
         Imf::OutputFile output(stream, header);
         output.setFrameBuffer(frame);
         output.writePixels(image.height);
@@ -244,7 +234,8 @@ std::string encode(const Image& image, const Metadata& metadata, int threads) {
 
 }  // namespace
 
-void write_exr(const std::filesystem::path& file, const Image& image, const Metadata& metadata, int threads) {
+void write_exr(const std::filesystem::path& file, const Image& image, const Metadata& metadata,
+               ExrCompression compression) {
     assert(image.width > 0 && image.height > 0 && !image.layers.empty());
     for (const Layer& layer : image.layers) {
         assert(layer.pixels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
@@ -254,7 +245,7 @@ void write_exr(const std::filesystem::path& file, const Image& image, const Meta
 
     std::string bytes;
     try {
-        bytes = encode(image, metadata, threads);
+        bytes = encode(image, metadata, compression);
     } catch (const std::exception& error) {
         throw InputError(file.string(), std::string("cannot be written: ") + error.what());
     }
