@@ -23,15 +23,12 @@ struct PackedUnitVector {
     PackedUnitVector() = default;
     explicit PackedUnitVector(const Vector& direction) {
         const float scale = 1.0f / (std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z));
-        float x = direction.x * scale;
-        float y = direction.y * scale;
-        if (direction.z < 0.0f) {
-            const float folded = (1.0f - std::abs(y)) * std::copysign(1.0f, x);
-            y = (1.0f - std::abs(x)) * std::copysign(1.0f, y);
-            x = folded;
-        }
-        u = round(x);
-        v = round(y);
+        const float x = direction.x * scale;
+        const float y = direction.y * scale;
+        const float folded_x = (1.0f - std::abs(y)) * std::copysign(1.0f, x);
+        const float folded_y = (1.0f - std::abs(x)) * std::copysign(1.0f, y);
+        u = round(direction.z < 0.0f ? folded_x : x);
+        v = round(direction.z < 0.0f ? folded_y : y);
     }
 
     /// Along the direction, of length 0.57 to 1: what needs only signs or ratios saves the square root.

@@ -17,7 +17,9 @@ inline Imath::V2f sample_unit_disc(const Imath::V2f& u) {
     const bool horizontal = std::abs(x) > std::abs(y);
     const float radius = horizontal ? x : y;
     const float quarter_pi = static_cast<float>(pi / 4.0);
-    const float angle = horizontal ? quarter_pi * (y / x) : 2.0f * quarter_pi - quarter_pi * (x / y);
+    // Which of the two is a coin's toss: chosen between, not branched on.
+    const float part = quarter_pi * ((horizontal ? y : x) / radius);
+    const float angle = horizontal ? part : 2.0f * quarter_pi - part;
     return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
