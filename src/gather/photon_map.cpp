@@ -6,59 +6,33 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/morton.h"
 
 namespace photonlab {
 
 namespace {
 
-constexpr int leaf_max_size = 48;
+constexpr int leaf_max_size = 8;
 
 /// A Morton number in the upper half, the photon's place in the lower.
 using SortKey = std::uint64_t;
-constexpr unsigned bits_per_axis = 10;
 
-/// Spreads the low 10 bits of `x` so that two zero bits follow each.
-std::uint64_t spread_bits(std::uint64_t x) {
-    x = (x | x << 16) & 0x30000ff;
-    x = (x | x << 8) & 0x300f00f;
-    x = (x | x << 4) & 0x30c30c3;
-    x = (x | x << 2) & 0x9249249;
-    return x;
-}
-
-/// Keys along a Morton curve over the photons' bounding box.
 std::vector<SortKey> morton_keys(const std::vector<Photon>& photons) {
-    Vector lower(infinity);
-    Vector upper(-infinity);
-    for (const Photon& photon : photons)
-        for (int axis = 0; axis < 3; ++axis) {
-            lower[axis] = std::min(lower[axis], photon.position[axis]);
-            upper[axis] = std::max(upper[axis], photon.position[axis]);
-        }
-    constexpr double cells = (1u << bits_per_axis) - 1.0;
-    std::array<double, 3> scale{};
-    for (int axis = 0; axis < 3; ++axis) {
-        const double extent = static_cast<double>(upper[axis]) - lower[axis];
-        scale[static_cast<std::size_t>(axis)] = extent > 0.0 ? cells / extent : 0.0;
-    }
+    Box box;
+    for (const Photon& photon : photons) box.include(photon.position);
+    const MortonCurve curve(box);
     std::vector<SortKey> keys(photons.size());
-    for (std::size_t i = 0; i < photons.size(); ++i) {
-        const Vector& position = photons[i].position;
-        const auto cell = [&](int axis) {
-            const double offset = static_cast<double>(position[axis]) - lower[axis];
-            return static_cast<std::uint64_t>(offset * scale[static_cast<std::size_t>(axis)]);
-        };
-        keys[i] = (spread_bits(cell(0)) | spread_bits(cell(1)) << 1 | spread_bits(cell(2)) << 2) << 32 | i;
-    }
+    for (std::size_t i = 0; i < photons.size(); ++i)
+        keys[i] = std::uint64_t{curve.place_of(photons[i].position)} << 32 | i;
     return keys;
 }
 
 /// Stable least-significant-digit radix sort by Morton number.
 void radix_sort(std::vector<SortKey>& keys) {
-    constexpr unsigned digit_bits = bits_per_axis;
+    constexpr unsigned digit_bits = MortonCurve::bits_per_axis;
     constexpr std::size_t buckets = std::size_t{1} << digit_bits;
     std::vector<SortKey> other(keys.size());
-    for (unsigned shift = 32; shift < 32 + 3 * bits_per_axis; shift += digit_bits) {
+    for (unsigned shift = 32; shift < 32 + 3 * digit_bits; shift += digit_bits) {
         std::array<std::size_t, buckets> starts{};
         for (const SortKey key : keys) ++starts[key >> shift & (buckets - 1)];
         std::size_t next = 0;
@@ -97,31 +71,26 @@ bool is_usable(const Photon& photon) {
 }
 
 /// Keeps the k nearest accepted photons: in order for small k, which is faster there, as a heap for large.
-class NearestVisitor : public flann::ResultSet<float> {
+class NearestSink {
 public:
     /// `neighbours` is the caller's buffer, emptied here. k >= 1.
-    NearestVisitor(const std::vector<Photon>& photons, const Vector& position, const Vector& normal, std::size_t k,
-                   double max_squared_radius, std::vector<Neighbour>& neighbours)
-        : photons_(photons),
-          position_(position),
+    NearestSink(const Vector& position, const Vector& normal, std::size_t k, double max_squared_radius,
+                std::vector<Neighbour>& neighbours)
+        : position_(position),
           normal_(normal),
           k_(k),
           ordered_(k <= 256),
           squared_radius_(max_squared_radius),
-          bound_(pruning_bound(max_squared_radius)),
           neighbours_(neighbours) {
         neighbours_.clear();
     }
 
-    bool full() const override { return true; }  // the maximum radius bounds the search from the start
-    float worstDist() const override { return bound_; }
-    void addPoint(float, std::size_t index) override {
-        const Photon& photon = photons_[index];
-        const Neighbour neighbour{squared_distance_between(photon.position, position_),
-                                  static_cast<std::uint32_t>(index)};
-        if (neighbour.squared_distance > squared_radius_ || !is_accepted(photon, normal_)) return;
+    double reach() const { return std::sqrt(squared_radius_); }
+    bool take(const Vector& position, std::size_t index, const Photon& photon) {
+        const Neighbour neighbour{squared_distance_between(position, position_), static_cast<std::uint32_t>(index)};
+        if (neighbour.squared_distance > squared_radius_ || !is_accepted(photon, normal_)) return false;
         if (neighbours_.size() == k_) {
-            if (!(neighbour < farthest())) return;
+            if (!(neighbour < farthest())) return false;
             if (!ordered_) std::pop_heap(neighbours_.begin(), neighbours_.end());
             neighbours_.pop_back();
         }
@@ -131,10 +100,9 @@ public:
             neighbours_.push_back(neighbour);
             std::push_heap(neighbours_.begin(), neighbours_.end());
         }
-        if (neighbours_.size() == k_) {
-            squared_radius_ = farthest().squared_distance;
-            bound_ = pruning_bound(squared_radius_);
-        }
+        if (neighbours_.size() < k_) return false;
+        squared_radius_ = farthest().squared_distance;
+        return true;
     }
 
     /// Nearest first, once the search is over.
@@ -145,13 +113,11 @@ public:
 private:
     const Neighbour& farthest() const { return ordered_ ? neighbours_.back() : neighbours_.front(); }
 
-    const std::vector<Photon>& photons_;
     const Vector position_;
     const Vector normal_;
     const std::size_t k_;
     const bool ordered_;
     double squared_radius_;  // shrinks to the k-th distance once there are k
-    float bound_;
     std::vector<Neighbour>& neighbours_;
 };
 
@@ -175,31 +141,27 @@ PhotonMap::PhotonMap(std::vector<Photon> photons) {
     }
     photons_ = std::move(photons);
 
-    const flann::Matrix<float> positions(&photons_[0].position.x, photons_.size(), 3, sizeof(Photon));
-    index_ = std::make_unique<Index>(positions, flann::KDTreeSingleIndexParams(leaf_max_size, true));
+    groups_ = PhotonGroups(photons_);
+    // FLANN takes what it is given as not const, and reads it alone.
+    auto* first_centre = const_cast<float*>(&groups_.list()[0].centre.x);
+    const flann::Matrix<float> centres(first_centre, groups_.list().size(), 3, sizeof(PhotonGroup));
+    index_ = std::make_unique<Index>(centres, flann::KDTreeSingleIndexParams(leaf_max_size, true));
     index_->buildIndex();
 
     // FLANN reports its nodes and permutation, in an int that wraps at 2 GB, and not its pointer to each point nor its
     // reordered copy of the positions.
     const std::uint64_t index_bytes =
-        static_cast<std::uint32_t>(index_->usedMemory()) + count * (sizeof(float*) + 3 * sizeof(float));
-    bytes_ = photon_bytes + std::max(2 * count * sizeof(SortKey), index_bytes);
-}
-
-void PhotonMap::search(flann::ResultSet<float>& result, const Vector& position, double eps) const {
-    if (!index_ || !is_finite(position)) return;
-    flann::SearchParams parameters;
-    parameters.eps = static_cast<float>(std::min(eps, static_cast<double>(std::numeric_limits<float>::max())));
-    index_->findNeighbors(result, &position.x, parameters);
+        static_cast<std::uint32_t>(index_->usedMemory()) + groups_.list().size() * (sizeof(float*) + 3 * sizeof(float));
+    bytes_ = photon_bytes + std::max(2 * count * sizeof(SortKey), groups_.bytes() + index_bytes);
 }
 
 void PhotonMap::find_nearest(const Vector& position, const Vector& normal, std::size_t k, double max_squared_radius,
                              double eps, std::vector<Neighbour>& neighbours) const {
     neighbours.clear();
     if (k == 0) return;
-    NearestVisitor visitor(photons_, position, normal, k, max_squared_radius, neighbours);
-    search(visitor, position, eps);
-    visitor.finish();
+    NearestSink sink(position, normal, k, max_squared_radius, neighbours);
+    search(position, eps, sink);
+    sink.finish();
 }
 
 }  // namespace photonlab

@@ -64,24 +64,30 @@ private:
 };
 
 /// Everything within each hit point's own radius, weighted by the kernel: the sums of hit points [range.begin,
-/// range.end), in order. `radius_of(index)` is in the unit box.
+/// range.end), one of the blocks, in order. `radius_of(index)` is in the unit box.
 template <typename RadiusOf>
 std::vector<FluxSum> gather_within(const PhotonMap& map, const Scene& scene, const HitPoints& hit_points,
                                    BlockRange range, const MethodSettings& settings, const RadiusOf& radius_of) {
-    std::vector<GatherQuery> queries;
+    const std::size_t count = range.end - range.begin;
+    const std::uint8_t* order = &hit_points.search_order[range.begin];
     std::vector<FluxSum> sums;
-    queries.reserve(range.end - range.begin);
-    sums.reserve(range.end - range.begin);
+    std::vector<GatherQuery> in_list;
+    sums.reserve(count);
+    in_list.reserve(count);
     for (std::size_t i = range.begin; i < range.end; ++i) {
         const HitPoint& point = hit_points.points[i];
-        queries.push_back({point.position, point.normal, radius_of(i)});
+        in_list.push_back({point.position, point.normal, radius_of(i)});
         sums.emplace_back(scene, point, settings.max_depth);
     }
+    std::vector<GatherQuery> queries;
+    queries.reserve(count);
+    for (std::size_t place = 0; place < count; ++place) queries.push_back(in_list[order[place]]);
     map.within_each(
         queries,
-        [&](std::size_t i, const Photon& photon, double squared_distance) {
-            const double squared_radius = queries[i].radius * queries[i].radius;
-            sums[i].add(photon, kernel_weight(settings.kernel, std::min(1.0, squared_distance / squared_radius)));
+        [&](std::size_t place, const Photon& photon, double squared_distance) {
+            const double squared_radius = queries[place].radius * queries[place].radius;
+            sums[order[place]].add(photon,
+                                   kernel_weight(settings.kernel, std::min(1.0, squared_distance / squared_radius)));
         },
         settings.eps);
     return sums;

@@ -11,8 +11,6 @@
 
 namespace photonlab {
 
-inline constexpr std::size_t hit_points_per_block = 256;  ///< handed to a thread at a time
-
 /// Sums `radiance_of(index)` of each hit point, times `scale`, into pixels, each value times its point's weight, in the
 /// order of the points.
 template <typename RadianceOf>

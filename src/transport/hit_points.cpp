@@ -1,9 +1,12 @@
 #include "transport/hit_points.h"
 
+#include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "core/error.h"
+#include "core/morton.h"
 #include "core/parallel.h"
 #include "scene/emitter.h"
 
@@ -57,6 +60,25 @@ int grid_size(int samples_per_pixel) {
         throw InputError("samples_per_pixel: expected a perfect square (1, 4, 9, 16, ...), got " +
                          std::to_string(samples_per_pixel));
     return size;
+}
+
+std::vector<std::uint8_t> search_order(const HitPointList& points) {
+    static_assert(hit_points_per_block - 1 <= std::numeric_limits<std::uint8_t>::max());
+    std::vector<std::uint8_t> order;
+    order.reserve(points.size());
+    std::vector<std::pair<std::uint32_t, std::uint8_t>> places;
+    for (std::size_t block = 0; block < block_count(points.size(), hit_points_per_block); ++block) {
+        const BlockRange range = block_range(block, points.size(), hit_points_per_block);
+        Box box;
+        for (std::size_t i = range.begin; i < range.end; ++i) box.include(points[i].position);
+        const MortonCurve curve(box);
+        places.clear();
+        for (std::size_t i = range.begin; i < range.end; ++i)
+            places.emplace_back(curve.place_of(points[i].position), static_cast<std::uint8_t>(i - range.begin));
+        std::sort(places.begin(), places.end());
+        for (const auto& [place, index] : places) order.push_back(index);
+    }
+    return order;
 }
 
 }  // namespace
@@ -229,6 +251,7 @@ HitPoints trace_hit_points(const Scene& scene, const Camera& camera, int samples
         parallel_for(in_round, threads, [&](std::size_t slot) { trace_tile(first + slot, round[slot]); });
         for (std::size_t slot = 0; slot < in_round; ++slot) move_to_end(result, round[slot]);
     }
+    result.search_order = search_order(result.points);
     result.weight_cut /= static_cast<double>(pixel_count(result));
     return result;
 }

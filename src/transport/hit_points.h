@@ -134,6 +134,8 @@ struct SeenEmission {
     ColorD radiance;      ///< times the path's throughput and the sample's share of the pixel
 };
 
+inline constexpr std::size_t hit_points_per_block = 256;  ///< handed to a thread at a time
+
 /// The result of the camera pass.
 struct HitPoints {
     int width = 0;
@@ -143,9 +145,12 @@ struct HitPoints {
                           ///< neighbours in space; those of a pixel follow each other
     std::vector<float>
         footprints;  ///< one a point, unit box: unfolded distance from the camera times the pixel's angle
-    std::vector<SeenEmission> emission;  ///< that of a pixel follows each other
-    double weight_cut = 0.0;             ///< throughput of the branches that were ended, mean channel, mean over pixels
-    std::uint64_t nonfinite = 0;         ///< camera paths that met a non-finite value
+    std::vector<std::uint8_t> search_order;  ///< in each block of hit_points_per_block points, which of it comes first,
+                                             ///< second, ... along a Morton curve through them: pixels lie side by side
+                                             ///< in the image, and in space only where no edge or mirror is between
+    std::vector<SeenEmission> emission;      ///< that of a pixel follows each other
+    double weight_cut = 0.0;      ///< throughput of the branches that were ended, mean channel, mean over pixels
+    std::uint64_t nonfinite = 0;  ///< camera paths that met a non-finite value
 };
 
 /// Where camera branches end unless a method says otherwise, and always those of a reference.
@@ -167,7 +172,7 @@ inline std::size_t pixel_count(const HitPoints& hit_points) {
 
 /// Of the points and what is kept with them.
 inline std::uint64_t hit_point_bytes(const HitPoints& hit_points) {
-    return hit_points.points.bytes() + hit_points.footprints.size() * sizeof(float);
+    return hit_points.points.bytes() + hit_points.footprints.size() * sizeof(float) + hit_points.search_order.size();
 }
 
 /// One a pixel: the emission that paths of at most max_depth edges see.

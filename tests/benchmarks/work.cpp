@@ -27,7 +27,9 @@ Work make_work() {
         if (pass == 1 || pass == late_pass) {
             const std::size_t which = pass == 1 ? 0 : 1;
             work.photons[which] = traced.photons;
-            for (std::size_t i = 0; i < work.hit_points.points.size(); ++i) {
+            for (std::size_t place = 0; place < work.hit_points.points.size(); ++place) {
+                const std::size_t i =
+                    place - place % hit_points_per_block + std::size_t{work.hit_points.search_order[place]};
                 const HitPoint& point = work.hit_points.points[i];
                 work.queries[which].push_back(
                     {point.position, point.normal, ppm->gather_state(i).value().radius / work.scene.unit_length});

@@ -25,7 +25,7 @@ struct Work {
     HitPoints hit_points;
     MethodSettings method;
     std::vector<Photon> photons[2];       ///< early, late; in path order
-    std::vector<GatherQuery> queries[2];  ///< one a hit point, with its radius in that pass
+    std::vector<GatherQuery> queries[2];  ///< one a hit point, with its radius in that pass, in the order of search
 };
 
 /// Made at the first call.

@@ -620,7 +620,8 @@ TEST(PhotonMap, BytesCountPhotonsIndexAndBuffers) {
     const PhotonSet set =
         photon_set("bytes", 50'000, [](RandomStream& random, std::size_t) { return random_point(random, 1.0f); });
     const double bytes_per_photon = static_cast<double>(PhotonMap(set.photons).bytes()) / 50'000.0;
-    EXPECT_GE(bytes_per_photon, static_cast<double>(sizeof(Photon) + 24));
+    // Photons with sort keys, or with their positions once more, groups and FLANN's tree of those.
+    EXPECT_GE(bytes_per_photon, static_cast<double>(sizeof(Photon) + 16));
     EXPECT_LE(bytes_per_photon, 64.0);
 }
 

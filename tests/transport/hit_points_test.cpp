@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/error.h"
+#include "core/parallel.h"
+#include "scene/loader.h"
 #include "tests/statistical/rendering.h"
 #include "tests/statistical/scenes.h"
 
@@ -55,6 +59,32 @@ TEST(HitPoints, FootprintIsTheWidthOfAPixelThere) {
         if (hit_points.points[i].pixel != 10 * 21 + 10) continue;
         EXPECT_NEAR(hit_points.footprints[i] * scene.unit_length, 2.0 / 21.0, 1e-5);
     }
+}
+
+// The image shows a floor and a wall behind it: where they meet, what is above each other in the image is not in space.
+TEST(HitPoints, AreSearchedBlockByBlockEachPointOnceAndNeighboursAfterEachOther) {
+    const Scene scene =
+        build_scene(load_scene_file(PHOTONLAB_SOURCE_DIR "/scenes/cornell-spheres/scene.xml"), Resolution{64, 64});
+    const HitPoints hit_points = trace_hit_points(scene, 1, 1);
+    const std::size_t count = hit_points.points.size();
+    ASSERT_EQ(hit_points.search_order.size(), count);
+    double along_list = 0.0;
+    double along_order = 0.0;
+    for (std::size_t block = 0; block < block_count(count, hit_points_per_block); ++block) {
+        const BlockRange range = block_range(block, count, hit_points_per_block);
+        std::vector<std::uint8_t> places(hit_points.search_order.begin() + static_cast<std::ptrdiff_t>(range.begin),
+                                         hit_points.search_order.begin() + static_cast<std::ptrdiff_t>(range.end));
+        const auto step = [&](std::size_t from, std::size_t to) {
+            return (hit_points.points[from].position - hit_points.points[to].position).length();
+        };
+        for (std::size_t i = 1; i < places.size(); ++i) {
+            along_list += step(range.begin + i - 1, range.begin + i);
+            along_order += step(range.begin + places[i - 1], range.begin + places[i]);
+        }
+        std::sort(places.begin(), places.end());
+        for (std::size_t i = 0; i < places.size(); ++i) ASSERT_EQ(places[i], i);
+    }
+    EXPECT_LT(along_order, 0.6 * along_list);
 }
 
 TEST(HitPoints, AreTheSameOnAnyNumberOfThreads) {
