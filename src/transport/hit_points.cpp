@@ -102,11 +102,11 @@ void HitPointList::push_back(const HitPoint& point, bool is_diffuse) {
     if (index == facings_.size()) facings_.push_back(facing);
 
     const bool is_plain = is_diffuse && point.camera_edges == 1 && point.weight == Color(share_);
-    records_.push_back({.position = point.position,
-                        .pixel = point.pixel,
-                        .facing = static_cast<std::uint32_t>(index),
-                        .view = is_plain ? plain_view : static_cast<std::uint32_t>(views_.size())});
-    if (!is_plain) views_.push_back({point.weight, point.camera_edges});
+    const auto facing_index = static_cast<std::uint32_t>(index);
+    const auto view_index = static_cast<std::uint32_t>(views_.size());
+    records_.push_back(
+        {.position = point.position, .pixel = point.pixel, .seen = is_plain ? facing_index : view_index | of_view});
+    if (!is_plain) views_.push_back({point.weight, facing_index, point.camera_edges});
     if (!is_plain && keeps_.outgoing) outgoing_.push_back(is_diffuse ? point.normal : point.outgoing);
     if (keeps_.texture_coordinates) texture_coordinates_.push_back(point.texture_coordinate);
 }
@@ -115,12 +115,14 @@ void HitPointList::append(const HitPointList& other) {
     const auto first_facing = static_cast<std::uint32_t>(facings_.size());
     const auto first_view = static_cast<std::uint32_t>(views_.size());
     for (Record record : other.records_) {
-        record.facing += first_facing;
-        if (record.view != plain_view) record.view += first_view;
+        record.seen += (record.seen & of_view) == 0 ? first_facing : first_view;
         records_.push_back(record);
     }
     facings_.insert(facings_.end(), other.facings_.begin(), other.facings_.end());
-    views_.insert(views_.end(), other.views_.begin(), other.views_.end());
+    for (View view : other.views_) {
+        view.facing += first_facing;
+        views_.push_back(view);
+    }
     outgoing_.insert(outgoing_.end(), other.outgoing_.begin(), other.outgoing_.end());
     texture_coordinates_.insert(texture_coordinates_.end(), other.texture_coordinates_.begin(),
                                 other.texture_coordinates_.end());

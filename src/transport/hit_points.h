@@ -31,7 +31,7 @@ struct HitPoint {
     Imath::V2f texture_coordinate;
 };
 
-/// Hit points, each in 24 bytes and what it does not share with its neighbours. They are stored once and read often:
+/// Hit points, each in 20 bytes and what it does not share with its neighbours. They are stored once and read often:
 /// elements are made when they are asked for.
 class HitPointList {
 public:
@@ -55,7 +55,9 @@ public:
     bool empty() const { return records_.empty(); }
     HitPoint operator[](std::size_t index) const {
         const Record& record = records_[index];
-        const Facing& facing = facings_[record.facing];
+        const bool is_plain = (record.seen & of_view) == 0;
+        const std::uint32_t view_index = record.seen & ~of_view;
+        const Facing& facing = facings_[is_plain ? record.seen : views_[view_index].facing];
         HitPoint point{.position = record.position,
                        .normal = facing.normal,
                        .geometric_normal = facing.geometric_normal,
@@ -65,11 +67,11 @@ public:
                        .material = facing.material,
                        .camera_edges = 1,
                        .texture_coordinate = Imath::V2f(0.0f)};
-        if (record.view != plain_view) {
-            const View& view = views_[record.view];
+        if (!is_plain) {
+            const View& view = views_[view_index];
             point.weight = view.weight;
             point.camera_edges = view.camera_edges;
-            if (keeps_.outgoing) point.outgoing = outgoing_[record.view];
+            if (keeps_.outgoing) point.outgoing = outgoing_[view_index];
         }
         if (keeps_.texture_coordinates) point.texture_coordinate = texture_coordinates_[index];
         return point;
@@ -96,13 +98,12 @@ public:
     std::uint64_t bytes() const;
 
 private:
-    static constexpr std::uint32_t plain_view = ~0u;
+    static constexpr std::uint32_t of_view = 1u << 31;
 
     struct Record {
         Vector position;
         std::uint32_t pixel;
-        std::uint32_t facing;  // into facings_
-        std::uint32_t view;    // into views_, or plain_view
+        std::uint32_t seen;  // index into facings_, or, with the bit of_view, into views_
     };
     /// What neighbours on a flat surface share.
     struct Facing {
@@ -115,6 +116,7 @@ private:
     /// way.
     struct View {
         Color weight;
+        std::uint32_t facing;  // into facings_
         std::uint16_t camera_edges;
     };
 
