@@ -2,41 +2,38 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <string_view>
 
 #include "core/error.h"
+#include "core/number_in.h"
 #include "integrators/registry.h"
 
 namespace photonlab {
 
 Resolution parse_resolution(const std::string& text) {
     constexpr int largest_side = 65536;
-    const char* end = text.data() + text.size();
-    Resolution resolution{0, 0};
-    const auto width = std::from_chars(text.data(), end, resolution.width);
-    if (width.ec == std::errc() && width.ptr != end && *width.ptr == 'x') {
-        const auto height = std::from_chars(width.ptr + 1, end, resolution.height);
-        const auto fits = [](int side) { return side >= 1 && side <= largest_side; };
-        if (height.ec == std::errc() && height.ptr == end && fits(resolution.width) && fits(resolution.height))
-            return resolution;
+    const std::size_t x = text.find('x');
+    if (x != std::string::npos) {
+        const std::optional<int> width = number_in<int>(std::string_view(text).substr(0, x));
+        const std::optional<int> height = number_in<int>(std::string_view(text).substr(x + 1));
+        const auto fits = [](std::optional<int> side) { return side && *side >= 1 && *side <= largest_side; };
+        if (fits(width) && fits(height)) return {*width, *height};
     }
     throw InputError(fmt::format("--resolution: expected WIDTHxHEIGHT in pixels, such as 640x480, got \"{}\"", text));
 }
 
 std::string require_whole_number(const std::string& text) {
-    std::uint64_t number = 0;
-    const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
-    const bool is_sound = read.ec == std::errc() && read.ptr == text.data() + text.size();
-    return is_sound ? "" : fmt::format("expected a whole number from 0 to {}, got \"{}\"", ~std::uint64_t{0}, text);
+    return number_in<std::uint64_t>(text)
+               ? ""
+               : fmt::format("expected a whole number from 0 to {}, got \"{}\"", ~std::uint64_t{0}, text);
 }
 
 std::string require_seconds(const std::string& text) {
-    double number = 0.0;
-    const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
-    const bool is_sound = read.ec == std::errc() && read.ptr == text.data() + text.size() && number >= 0.0 &&
-                          number <= std::numeric_limits<double>::max();
+    const std::optional<double> number = number_in<double>(text);
+    const bool is_sound = number && *number >= 0.0 && *number <= std::numeric_limits<double>::max();
     return is_sound ? "" : fmt::format("expected a number of seconds, at least 0, got \"{}\"", text);
 }
 

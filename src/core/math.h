@@ -37,6 +37,15 @@ bool is_finite(const Imath::Vec3<T>& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+/// The farthest coordinate, and the largest length, in the unit box: floats square it with room to spare.
+inline constexpr double largest_length = 1e18;
+
+/// False for what float cannot square, and for NaN.
+inline bool is_squarable(const Vector& v) {
+    const auto fits = [](float x) { return std::abs(x) <= static_cast<float>(largest_length); };
+    return fits(v.x) && fits(v.y) && fits(v.z);
+}
+
 template <typename T>
 bool is_black(const Imath::Color3<T>& color) {
     return color.x == 0 && color.y == 0 && color.z == 0;

@@ -4,7 +4,7 @@ namespace photonlab {
 
 // Two blocks at a time: a round waits for the one before it, and the other block's fits in between.
 void RandomStream::refill() {
-    constexpr std::size_t half = std::tuple_size_v<Numbers> / 2;
+    constexpr std::size_t half = capacity / 2;
     auto next_counter = counter_;
     ++next_counter[0];
     const auto first = Philox()(counter_, key_);

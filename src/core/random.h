@@ -11,7 +11,6 @@
 
 #include <array>
 #include <cstdint>
-#include <tuple>
 
 namespace photonlab {
 
@@ -37,7 +36,7 @@ public:
         : key_(key_of(seed)), counter_(counter_of(purpose, pass, index)) {}
 
     std::uint32_t next_bits() {
-        if (used_ == numbers_.size()) refill();
+        if (used_ == capacity) refill();
         return numbers_[used_++];
     }
 
@@ -60,7 +59,7 @@ private:
     friend class RandomStreams;
     using Philox = r123::Philox4x32;
     static constexpr std::uint32_t blocks = 4;  // of four numbers each, that a stream has room for
-    using Numbers = std::array<std::uint32_t, 4 * blocks>;
+    static constexpr std::size_t capacity = 4 * blocks;
 
     static Philox::key_type key_of(std::uint64_t seed) {
         return {{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)}};
@@ -75,8 +74,8 @@ private:
 
     Philox::key_type key_;
     Philox::ctr_type counter_;
-    Numbers numbers_;
-    std::size_t used_ = std::tuple_size_v<Numbers>;
+    std::array<std::uint32_t, capacity> numbers_;
+    std::size_t used_ = capacity;
 };
 
 /// The streams of all indices, for loops over neighbours: the first numbers of 64 streams are made together, in a plain

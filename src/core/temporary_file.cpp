@@ -5,12 +5,12 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <string>
 #include <system_error>
 
 #include "core/error.h"
+#include "core/number_in.h"
 
 namespace photonlab {
 
@@ -31,10 +31,8 @@ void remove_leftovers(const std::filesystem::path& final_name) {
     for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
         const std::string name = entry.path().filename().string();
         if (!name.starts_with(start)) continue;
-        pid_t process = 0;
-        const auto number = std::from_chars(name.data() + start.size(), name.data() + name.size(), process);
-        const bool is_process = number.ec == std::errc() && number.ptr == name.data() + name.size() && process > 0;
-        if (is_process && !is_alive(process)) std::filesystem::remove(entry.path(), ignored);
+        const std::optional<pid_t> process = number_in<pid_t>(std::string_view(name).substr(start.size()));
+        if (process && *process > 0 && !is_alive(*process)) std::filesystem::remove(entry.path(), ignored);
     }
 }
 

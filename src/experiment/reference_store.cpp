@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <chrono>
 #include <cstdint>
 #include <limits>
@@ -12,6 +11,7 @@
 #include "core/file_lock.h"
 #include "core/files.h"
 #include "core/hash.h"
+#include "core/number_in.h"
 #include "experiment/version.h"
 #include "image/exr.h"
 #include "integrators/registry.h"
@@ -69,13 +69,11 @@ std::filesystem::path half_file(const std::filesystem::path& folder, std::string
 
 std::uint64_t read_number(const std::filesystem::path& file, const Metadata& metadata, std::string_view attribute) {
     const auto found = metadata.find(std::string(attribute));
-    const std::string text = found == metadata.end() ? "" : found->second;
-    std::uint64_t number = 0;
-    const auto result = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (text.empty() || result.ec != std::errc() || result.ptr != text.data() + text.size())
+    const auto number = number_in<std::uint64_t>(found == metadata.end() ? std::string_view() : found->second);
+    if (!number)
         throw InputError(file.string(),
                          fmt::format("this is no half of a reference: its attribute {} is not a number", attribute));
-    return number;
+    return *number;
 }
 
 /// One half while samples are added: what was there, and an integrator that makes what is new.

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <limits>
 
+#include "core/number_in.h"
 #include "integrators/registry.h"
 
 namespace photonlab {
@@ -149,13 +149,8 @@ const SettingField* find_setting_field(std::string_view name) {
 }
 
 SettingValue parse_setting_value(std::string_view text) {
-    const char* end = text.data() + text.size();
-    std::int64_t integer = 0;
-    if (const auto result = std::from_chars(text.data(), end, integer); result.ec == std::errc() && result.ptr == end)
-        return integer;
-    double number = 0.0;
-    if (const auto result = std::from_chars(text.data(), end, number); result.ec == std::errc() && result.ptr == end)
-        return number;
+    if (const auto integer = number_in<std::int64_t>(text)) return *integer;
+    if (const auto number = number_in<double>(text)) return *number;
     return std::string(text);
 }
 

@@ -63,13 +63,6 @@ void permute(std::vector<Photon>& photons, std::vector<SortKey>& keys) {
     }
 }
 
-/// A position that FLANN can square: anything else would cost *other* queries their photons.
-bool is_usable(const Photon& photon) {
-    constexpr float largest = 1e18f;
-    const Vector& position = photon.position;
-    return std::abs(position.x) <= largest && std::abs(position.y) <= largest && std::abs(position.z) <= largest;
-}
-
 /// Keeps the k nearest accepted photons: in order for small k, which is faster there, as a heap for large.
 class NearestSink {
 public:
@@ -125,7 +118,8 @@ private:
 
 PhotonMap::PhotonMap(std::vector<Photon> photons) {
     const std::size_t given = photons.size();
-    std::erase_if(photons, [](const Photon& photon) { return !is_usable(photon); });
+    // What FLANN cannot square would cost *other* queries their photons.
+    std::erase_if(photons, [](const Photon& photon) { return !is_squarable(photon.position); });
     nonfinite_ = given - photons.size();
     if (photons.empty()) return;
     if (photons.size() > 0x7fffffff)

@@ -94,9 +94,8 @@ std::vector<FluxSum> gather_within(const PhotonMap& map, const Scene& scene, con
 }
 
 /// Radii that can be asked for, in shares of the scene (unit box). Float positions near its walls are 3e-8 apart: a
-/// disc of 1e-6 still has its area to 0.2%, one of 1e-7 to 5%. The largest is what float can still square.
+/// disc of 1e-6 still has its area to 0.2%, one of 1e-7 to 5%. The largest is largest_length.
 inline constexpr double smallest_initial_radius = 1e-7;
-inline constexpr double largest_initial_radius = 1e18;
 
 /// Initial gather radius of a hit point, unit box: the setting (scene units), or so many footprints of the pixel there.
 inline double initial_radius(const MethodSettings& settings, const IntegratorContext& context, std::size_t index) {

@@ -91,10 +91,10 @@ namespace {
 void require_resolvable(std::string_view name, const std::optional<double>& radius, const Scene& scene) {
     if (!radius) return;
     const double share = *radius / scene.unit_length;
-    if (!(share >= smallest_initial_radius && share <= largest_initial_radius))
+    if (!(share >= smallest_initial_radius && share <= largest_length))
         throw InputError(
             fmt::format("{}: expected from {:g} to {:g} of the scene, which is {:g} scene units large, got {:g}", name,
-                        smallest_initial_radius, largest_initial_radius, scene.unit_length, *radius));
+                        smallest_initial_radius, largest_length, scene.unit_length, *radius));
 }
 
 }  // namespace

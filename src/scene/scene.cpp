@@ -144,12 +144,6 @@ struct ToUnitBox {
     float length(double scene_units) const { return static_cast<float>(scene_units / unit_length); }
 };
 
-/// Embree takes no ray from where a float's square overflows, at 1.8e19; NaN is not traceable either.
-bool is_traceable(const Vector& position) {
-    constexpr float farthest = 1e18f;
-    return std::abs(position.x) <= farthest && std::abs(position.y) <= farthest && std::abs(position.z) <= farthest;
-}
-
 /// How far apart neighbouring doubles are at the farthest coordinate of the box, as a share of its size: where things
 /// are in the scene cannot be said any better.
 double coarseness_of(const Bounds& box, double size) {
@@ -270,7 +264,7 @@ Camera make_camera(const CameraDescription& description, std::optional<Resolutio
     // Written so that NaN fails as well.
     if (!is_finite(position) || !(std::abs(left.cross(up).dot(forward)) > 0.0))
         throw InputError("camera: to_world: expected an invertible transform with finite values");
-    if (!is_traceable(to_unit_box(position)))
+    if (!is_squarable(to_unit_box(position)))  // Embree takes no ray from there
         throw InputError(
             fmt::format("camera: position {} {} {} is too far from the scene, which is {} scene units large",
                         position.x, position.y, position.z, to_unit_box.unit_length));
@@ -303,7 +297,7 @@ void add_emitters(Scene& scene, const SceneDescription& description, const ToUni
     for (const PointLightDescription& light : description.point_lights) {
         const ColorD intensity = light.intensity / unit_area;
         const Vector position = to_unit_box(light.position);
-        if (!is_traceable(position))
+        if (!is_squarable(position))
             throw InputError(
                 light.place,
                 fmt::format("position {} {} {} is too far from the scene, which is {} scene units large",

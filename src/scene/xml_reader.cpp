@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/number_in.h"
 
 namespace photonlab {
 
@@ -342,12 +343,9 @@ double parse_number(std::string_view text, const std::string& place) {
 }
 
 long parse_integer(std::string_view text, const std::string& place) {
-    const std::string_view digits = trim(text);
-    long value = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc() || digits.empty() || end != digits.data() + digits.size())
-        throw InputError(place, fmt::format("expected a whole number, got \"{}\"", excerpt(text)));
-    return value;
+    const std::optional<long> value = number_in<long>(trim(text));
+    if (!value) throw InputError(place, fmt::format("expected a whole number, got \"{}\"", excerpt(text)));
+    return *value;
 }
 
 bool parse_boolean(std::string_view text, const std::string& place) {
