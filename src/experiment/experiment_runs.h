@@ -18,25 +18,12 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "experiment/experiment_file.h"
+#include "experiment/experiment_plan.h"
 #include "experiment/run_group.h"
-#include "scene/scene.h"
 
 namespace photonlab {
-
-struct PreparedExperiment {
-    std::vector<std::optional<Scene>> scenes;  ///< by index of Experiment::scenes; only those that a selected run needs
-    std::vector<PreparedRun> runs;             ///< the selected ones
-};
-
-/// Loads scenes and checks references for the runs whose name matches `only` (a shell pattern; empty: all). Throws
-/// InputError before anything is run or written. `experiment` must outlive the result.
-PreparedExperiment prepare_experiment(const Experiment& experiment, const std::filesystem::path& results,
-                                      const std::optional<std::string>& only = std::nullopt);
 
 struct ExperimentOutcome {
     std::size_t ran = 0;
@@ -50,8 +37,5 @@ struct ExperimentOutcome {
 /// when a checkpoint is damaged or of other settings.
 ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExperiment& prepared,
                                  const std::filesystem::path& results, const ContinuationOptions& options = {});
-
-/// One line a run: name, estimated time and memory, or that it is finished; then the sums.
-std::string list_runs(const Experiment& experiment, const PreparedExperiment& prepared);
 
 }  // namespace photonlab
