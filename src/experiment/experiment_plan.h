@@ -1,5 +1,5 @@
 // What an experiment will make, before it makes any of it: which runs, which of them are finished, which go together,
-// and what they take. Everything that can be refused is refused here.
+// and what they take. Scenes, settings, regions and references that do not fit are refused here.
 
 #pragma once
 
