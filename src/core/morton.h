@@ -36,7 +36,7 @@ public:
         if (extent > 0.0) scale_ = cells / extent;
     }
 
-    /// Of a point in the box, in 3 * bits_per_axis bits.
+    /// Of a finite point in the box, in 3 * bits_per_axis bits.
     std::uint32_t place_of(const Vector& point) const {
         const auto cell = [&](int axis) {
             const double offset = static_cast<double>(point[axis]) - lower_[axis];

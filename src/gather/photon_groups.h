@@ -1,5 +1,5 @@
-// Photons in groups of neighbours, so that a tree need only hold the groups: a fourteenth of the points to build it
-// over, and sixteen distances at a time where a search arrives.
+// Photons in groups of neighbours, so that a tree need only hold the groups: where light is spread out, a fourteenth of
+// the points to build it over, and sixteen distances at a time where a search arrives.
 
 #pragma once
 
@@ -20,6 +20,13 @@ struct PhotonGroup {
     std::uint32_t count;  ///< 1 to PhotonGroups::capacity
 };
 
+/// Groups [first, end) of the list: those that are about as far apart.
+struct GroupTier {
+    std::size_t first;
+    std::size_t end;
+    float largest_radius;
+};
+
 class PhotonGroups {
 public:
     static constexpr std::size_t capacity = 16;
@@ -27,11 +34,15 @@ public:
     PhotonGroups() = default;
 
     /// Of photons that follow each other along a curve through space. A group ends at `capacity` photons, or before it
-    /// would become wider than half of all runs of as many are: curves jump, and the widest group widens every search.
+    /// would become wider than the median run of as many: curves jump, and the widest group widens every search.
     explicit PhotonGroups(const std::vector<Photon>& photons);
 
-    const std::vector<PhotonGroup>& list() const { return list_; }
-    float largest_radius() const { return largest_radius_; }
+    const std::vector<PhotonGroup>& list() const { return list_; }  ///< tier by tier, along the curve in each
+
+    /// Densest first. A tree can be told one radius for all of its groups, and the widest of a whole scene would make a
+    /// search inside a caustic open every group there: so each tier is a tree of its own.
+    const std::vector<GroupTier>& tiers() const { return tiers_; }
+
     Vector position(std::size_t photon) const { return {x_[photon], y_[photon], z_[photon]}; }
     std::uint64_t bytes() const;
 
@@ -55,8 +66,11 @@ public:
     }
 
 private:
+    void make_groups(const std::vector<Photon>& photons);
+    void make_tiers();
+
     std::vector<PhotonGroup> list_;
-    float largest_radius_ = 0.0f;
+    std::vector<GroupTier> tiers_;
     // Positions once more, axis by axis, and then as many as a group may have, so that every group can be read whole.
     std::vector<float> x_;
     std::vector<float> y_;

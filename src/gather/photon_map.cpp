@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <span>
 #include <string>
 
 #include "core/error.h"
@@ -14,41 +16,61 @@ namespace {
 
 constexpr int leaf_max_size = 8;
 
-/// A Morton number in the upper half, the photon's place in the lower.
+/// A place along a curve in the upper half, the photon's index in the lower.
 using SortKey = std::uint64_t;
 
-std::vector<SortKey> morton_keys(const std::vector<Photon>& photons) {
-    Box box;
-    for (const Photon& photon : photons) box.include(photon.position);
-    const MortonCurve curve(box);
-    std::vector<SortKey> keys(photons.size());
-    for (std::size_t i = 0; i < photons.size(); ++i)
-        keys[i] = std::uint64_t{curve.place_of(photons[i].position)} << 32 | i;
-    return keys;
+std::size_t index_of(SortKey key) {
+    return static_cast<std::size_t>(key & 0xffffffffu);
 }
 
-/// Stable least-significant-digit radix sort by Morton number.
-void radix_sort(std::vector<SortKey>& keys) {
+/// By place, then by index: a stable least-significant-digit radix sort, or for few keys, whose indices ascend or not,
+/// an ordinary one.
+void sort_keys(std::span<SortKey> keys) {
+    constexpr std::size_t few = 2048;
+    if (keys.size() <= few) return std::sort(keys.begin(), keys.end());
     constexpr unsigned digit_bits = MortonCurve::bits_per_axis;
     constexpr std::size_t buckets = std::size_t{1} << digit_bits;
     std::vector<SortKey> other(keys.size());
+    std::span<SortKey> from = keys;
+    std::span<SortKey> to = other;
     for (unsigned shift = 32; shift < 32 + 3 * digit_bits; shift += digit_bits) {
         std::array<std::size_t, buckets> starts{};
-        for (const SortKey key : keys) ++starts[key >> shift & (buckets - 1)];
+        for (const SortKey key : from) ++starts[key >> shift & (buckets - 1)];
         std::size_t next = 0;
         for (std::size_t& start : starts) {
             const std::size_t count = start;
             start = next;
             next += count;
         }
-        for (const SortKey key : keys) other[starts[key >> shift & (buckets - 1)]++] = key;
-        keys.swap(other);
+        for (const SortKey key : from) to[starts[key >> shift & (buckets - 1)]++] = key;
+        std::swap(from, to);
+    }
+    std::copy(from.begin(), from.end(), keys.begin());  // three digits: they are in `other`
+}
+
+/// Puts the keys into the order of their photons along a Morton curve, and those that share a place on it along a finer
+/// one of their own: a caustic may be smaller than a cell of the scene.
+void sort_along_curve(const std::vector<Photon>& photons, std::span<SortKey> keys) {
+    Box box;
+    for (const SortKey key : keys) box.include(photons[index_of(key)].position);
+    const MortonCurve curve(box);
+    for (SortKey& key : keys)
+        key = std::uint64_t{curve.place_of(photons[index_of(key)].position)} << 32 | index_of(key);
+    sort_keys(keys);
+    for (std::size_t first = 0; first < keys.size();) {
+        std::size_t end = first + 1;
+        while (end < keys.size() && keys[end] >> 32 == keys[first] >> 32) ++end;
+        const std::size_t count = end - first;
+        // As many as there are: all of them at one point.
+        if (count > PhotonGroups::capacity && count < keys.size())
+            sort_along_curve(photons, keys.subspan(first, count));
+        first = end;
     }
 }
 
 /// Puts the photons into the order of the keys, in place: a second copy of them would be the peak of memory.
 void permute(std::vector<Photon>& photons, std::vector<SortKey>& keys) {
-    const auto source = [&](std::size_t place) { return static_cast<std::size_t>(keys[place] & 0xffffffffu); };
+    const auto source = [&](std::size_t place) { return index_of(keys[place]); };
     for (std::size_t start = 0; start < photons.size(); ++start) {
         const Photon first = photons[start];
         std::size_t place = start;
@@ -129,23 +151,25 @@ PhotonMap::PhotonMap(std::vector<Photon> photons) {
     const std::uint64_t count = photons.size();
     const std::uint64_t photon_bytes = count * sizeof(Photon);
     {
-        std::vector<SortKey> keys = morton_keys(photons);
-        radix_sort(keys);
+        std::vector<SortKey> keys(photons.size());
+        std::iota(keys.begin(), keys.end(), SortKey{0});
+        sort_along_curve(photons, keys);
         permute(photons, keys);
     }
     photons_ = std::move(photons);
 
     groups_ = PhotonGroups(photons_);
-    // FLANN takes what it is given as not const, and reads it alone.
-    auto* first_centre = const_cast<float*>(&groups_.list()[0].centre.x);
-    const flann::Matrix<float> centres(first_centre, groups_.list().size(), 3, sizeof(PhotonGroup));
-    index_ = std::make_unique<Index>(centres, flann::KDTreeSingleIndexParams(leaf_max_size, true));
-    index_->buildIndex();
-
     // FLANN reports its nodes and permutation, in an int that wraps at 2 GB, and not its pointer to each point nor its
     // reordered copy of the positions.
-    const std::uint64_t index_bytes =
-        static_cast<std::uint32_t>(index_->usedMemory()) + groups_.list().size() * (sizeof(float*) + 3 * sizeof(float));
+    std::uint64_t index_bytes = groups_.list().size() * (sizeof(float*) + 3 * sizeof(float));
+    for (const GroupTier& tier : groups_.tiers()) {
+        // FLANN takes what it is given as not const, and only reads it.
+        auto* first_centre = const_cast<float*>(&groups_.list()[tier.first].centre.x);
+        const flann::Matrix<float> centres(first_centre, tier.end - tier.first, 3, sizeof(PhotonGroup));
+        indices_.push_back(std::make_unique<Index>(centres, flann::KDTreeSingleIndexParams(leaf_max_size, true)));
+        indices_.back()->buildIndex();
+        index_bytes += static_cast<std::uint32_t>(indices_.back()->usedMemory());
+    }
     bytes_ = photon_bytes + std::max(2 * count * sizeof(SortKey), groups_.bytes() + index_bytes);
 }
 

@@ -1,10 +1,10 @@
 // The gather layer: photons in a k-d tree of FLANN, asked by position, normal and radius.
 //
-// Photons are sorted along a Morton curve and taken in groups of up to 16 neighbours, whose centres FLANN's tree holds:
-// a map is made in half of the time that a tree of photons takes, and searched as fast. FLANN's own recursive search
-// calls a visitor, so sums happen in place and every query has its own radius. FLANN squares radii, excludes the rim,
-// crashes on an empty set and loses photons of *other* queries when one is NaN: the guards against each are here and
-// nowhere else.
+// Photons are sorted along a Morton curve and taken in groups of up to 16 neighbours, whose centres FLANN's trees hold,
+// one tree for each tier of density: a map is made in half of the time that a tree of photons takes. FLANN's own
+// recursive search calls a visitor, so sums happen in place and every query has its own radius. FLANN squares radii,
+// excludes the rim, crashes on an empty set and loses photons of *other* queries when one is NaN: the guards against
+// each are here and nowhere else.
 //
 // A photon is found when it passes the geometric tests, whatever its BRDF value: distance at most the radius, arrived
 // on the side of the query's normal, its own normal within 60 degrees of that normal.
@@ -78,17 +78,19 @@ struct Neighbour {
     }
 };
 
-/// All queries are const and may run concurrently; none depends on the thread that asks. A non-finite query point finds
-/// nothing.
+/// All queries are const and may run concurrently; none depends on the thread that asks. A query point that is not
+/// finite, or farther out than largest_length, finds nothing.
 ///
-/// `eps`, finite and at least 0, is exactness for speed and promises what FLANN's own does: a group is opened only when
-/// its squared distance times (1 + eps) is within the squared radius, so photons near the rim can be missed, and of k
-/// nearest ones too: farther ones take their places. 0 is exact.
+/// `eps`, finite and at least 0, is exactness for speed, as FLANN's is: nothing within radius / sqrt(1 + eps) is
+/// missed, beyond it what is in groups that lie there wholly; of k nearest photons, farther ones take the places of
+/// those. 0 is exact.
 class PhotonMap {
 public:
     /// Sorts and indexes the photons; single-threaded, the same result always. Photons whose position is not finite (or
     /// so far out that float32 cannot square it) are left out and counted.
     explicit PhotonMap(std::vector<Photon> photons);
+    PhotonMap(PhotonMap&&) = default;
+    PhotonMap& operator=(PhotonMap&&) = default;
 
     /// Calls `visit(const Photon&, double squared_distance)` for every accepted photon with distance <= radius (unit
     /// box), in an order that depends on the photons and the query alone. A radius below minimum_radius is taken as
@@ -127,9 +129,9 @@ private:
     void find_nearest(const Vector& position, const Vector& normal, std::size_t k, double max_squared_radius,
                       double eps, std::vector<Neighbour>& neighbours) const;
 
-    std::vector<Photon> photons_;   // in Morton order
-    PhotonGroups groups_;           // of them
-    std::unique_ptr<Index> index_;  // of the groups' centres; none without photons
+    std::vector<Photon> photons_;                  // in Morton order
+    PhotonGroups groups_;                          // of them
+    std::vector<std::unique_ptr<Index>> indices_;  // of the centres of each tier's groups
     std::uint64_t nonfinite_ = 0;
     std::uint64_t bytes_ = 0;
 };
@@ -142,12 +144,16 @@ inline double squared_distance_between(const Vector& a, const Vector& b) {
     return (VectorD(a) - VectorD(b)).length2();
 }
 
-/// The bound that FLANN is given: it keeps a point, or enters a cell, when its float d^2 is below. Wider than r^2 by
-/// more than float can err in d^2 and in the sum over a descent, so that nothing at the rim is lost; the exact test
-/// follows.
-inline float pruning_bound(double squared_radius) {
-    const double floored = std::max(squared_radius, PhotonMap::minimum_radius * PhotonMap::minimum_radius);
-    return static_cast<float>(std::min(floored * (1.0 + 1e-5), static_cast<double>(std::numeric_limits<float>::max())));
+/// By how much float may err in a squared distance: most in FLANN's, which it sums up on its way down a tree, 9e-6 in
+/// the deepest there can be.
+inline constexpr double squared_distance_slack = 1e-5;
+
+/// The bound on squared distances in float that loses nothing within `radius`; what it keeps beyond is tested exactly
+/// afterwards.
+inline float squared_bound(double radius) {
+    const double floored = std::max(radius, PhotonMap::minimum_radius);
+    return static_cast<float>(std::min(floored * floored * (1.0 + squared_distance_slack),
+                                       static_cast<double>(std::numeric_limits<float>::max())));
 }
 
 /// Queries that one search answers: at most 16, in a box whose half-diagonal is at most sqrt(8) of the largest radius,
@@ -170,7 +176,9 @@ public:
             }
             smallest = std::min(smallest, query.radius);
             largest = std::max(largest, query.radius);
-            const bool is_compact = (upper - lower).length2() <= 64.0 * largest * largest && largest <= 2.0 * smallest;
+            const float squared_diagonal = (upper - lower).length2();
+            const bool is_compact = std::isfinite(squared_diagonal) && squared_diagonal <= 64.0 * largest * largest &&
+                                    largest <= 2.0 * smallest;
             if (count_ > 0 && !is_compact) break;
             x_[count_] = query.position.x;
             y_[count_] = query.position.y;
@@ -198,7 +206,7 @@ public:
     /// A bit for each query whose ball holds the position, the first query's lowest; fills their squared distances.
     std::uint64_t holding(const Vector& position, std::array<double, capacity>& squared_distance) const {
         // Straight-line code over all slots, so that the compiler does several at once.
-        std::uint64_t inside = 0;  // as wide as what is compared
+        std::uint64_t inside = 0;  // as wide as a double: the compiler's vectors have lanes of one width
         for (std::size_t i = 0; i < capacity; ++i) {
             const double x = x_[i] - position.x;
             const double y = y_[i] - position.y;
@@ -228,19 +236,24 @@ private:
 template <typename Sink>
 class GroupVisitor : public flann::ResultSet<float> {
 public:
-    GroupVisitor(const std::vector<Photon>& photons, const PhotonGroups& groups, const Vector& centre, double eps,
-                 Sink& sink)
-        : photons_(photons), groups_(groups), centre_(centre), opened_share_(1.0 / std::sqrt(1.0 + eps)), sink_(sink) {
+    GroupVisitor(const std::vector<Photon>& photons, const PhotonGroups& groups, const GroupTier& tier,
+                 const Vector& centre, double eps, Sink& sink)
+        : photons_(photons),
+          groups_(groups),
+          tier_(tier),
+          centre_(centre),
+          opened_share_(1.0 / std::sqrt(1.0 + eps)),
+          sink_(sink) {
         set_bounds();
     }
 
     bool full() const override { return true; }  // the sink's reach bounds the search from the start
-    float worstDist() const override { return bound_; }
+    float worstDist() const override { return squared_group_bound_; }
     void addPoint(float squared_distance, std::size_t index) override {
-        const PhotonGroup& group = groups_.list()[index];
-        const float far = opened_ + group.radius;
-        if (squared_distance > far * far * (1.0f + 1e-5f)) return;
-        const unsigned inside = groups_.within(group, centre_, photon_bound_);
+        const PhotonGroup& group = groups_.list()[tier_.first + index];
+        const float farthest = opened_ + group.radius;
+        if (squared_distance > farthest * farthest * static_cast<float>(1.0 + squared_distance_slack)) return;
+        const unsigned inside = groups_.within(group, centre_, squared_photon_bound_);
         const auto each = [&](const auto& call) {
             for (unsigned left = inside; left != 0; left &= left - 1)
                 call(group.first + static_cast<std::size_t>(std::countr_zero(left)));
@@ -254,29 +267,32 @@ public:
 
 private:
     void set_bounds() {
-        const double reach = sink_.reach();
-        const double opened = reach * opened_share_;
+        const double reach = std::min(sink_.reach(), static_cast<double>(std::numeric_limits<float>::max()));
+        // Not below what float can square, however near the k-th photon is.
+        const double opened = std::max(reach * opened_share_, PhotonMap::minimum_radius);
         opened_ = static_cast<float>(opened);
-        photon_bound_ = pruning_bound(reach * reach);
-        const double farthest = opened + groups_.largest_radius();
-        bound_ = pruning_bound(farthest * farthest);
+        squared_photon_bound_ = squared_bound(reach);
+        squared_group_bound_ = squared_bound(opened + tier_.largest_radius);
     }
 
     const std::vector<Photon>& photons_;
     const PhotonGroups& groups_;
+    const GroupTier& tier_;
     const Vector centre_;
     const double opened_share_;
     Sink& sink_;
-    float opened_;        // distance within which a group's ball must come
-    float photon_bound_;  // on squared distances of photons
-    float bound_;         // on those of groups' centres
+    float opened_;  // distance within which a group's ball must come
+    float squared_photon_bound_;
+    float squared_group_bound_;  // on their centres
 };
 
 template <typename Sink>
 void PhotonMap::search(const Vector& centre, double eps, Sink& sink) const {
-    if (!index_ || !is_finite(centre)) return;
-    GroupVisitor<Sink> visitor(photons_, groups_, centre, eps, sink);
-    index_->findNeighbors(visitor, &centre.x, flann::SearchParams());
+    if (!is_squarable(centre)) return;
+    for (std::size_t tier = 0; tier < indices_.size(); ++tier) {
+        GroupVisitor<Sink> visitor(photons_, groups_, groups_.tiers()[tier], centre, eps, sink);
+        indices_[tier]->findNeighbors(visitor, &centre.x, flann::SearchParams());
+    }
 }
 
 /// Calls `visit` for each query of the cluster that a photon counts at.

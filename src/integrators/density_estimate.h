@@ -5,6 +5,7 @@
 
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -69,6 +70,8 @@ template <typename RadiusOf>
 std::vector<FluxSum> gather_within(const PhotonMap& map, const Scene& scene, const HitPoints& hit_points,
                                    BlockRange range, const MethodSettings& settings, const RadiusOf& radius_of) {
     const std::size_t count = range.end - range.begin;
+    assert(range.begin % hit_points_per_block == 0);
+    assert(count == std::min(hit_points_per_block, hit_points.points.size() - range.begin));
     const std::uint8_t* order = &hit_points.search_order[range.begin];
     std::vector<FluxSum> sums;
     std::vector<GatherQuery> in_list;

@@ -114,6 +114,8 @@ void HitPointList::push_back(const HitPoint& point, bool is_diffuse) {
 void HitPointList::append(const HitPointList& other) {
     const auto first_facing = static_cast<std::uint32_t>(facings_.size());
     const auto first_view = static_cast<std::uint32_t>(views_.size());
+    if (std::max(facings_.size() + other.facings_.size(), views_.size() + other.views_.size()) >= of_view)
+        throw InputError("expected fewer than 2^31 hit points in an image");
     for (Record record : other.records_) {
         record.seen += (record.seen & of_view) == 0 ? first_facing : first_view;
         records_.push_back(record);

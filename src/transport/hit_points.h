@@ -147,9 +147,9 @@ struct HitPoints {
                           ///< neighbours in space; those of a pixel follow each other
     std::vector<float>
         footprints;  ///< one a point, unit box: unfolded distance from the camera times the pixel's angle
-    std::vector<std::uint8_t> search_order;  ///< in each block of hit_points_per_block points, which of it comes first,
-                                             ///< second, ... along a Morton curve through them: pixels lie side by side
-                                             ///< in the image, and in space only where no edge or mirror is between
+    std::vector<std::uint8_t> search_order;  ///< of each block of hit_points_per_block points, their indices in it in
+                                             ///< the order to search them in, along a Morton curve: neighbours in the
+                                             ///< image are neighbours in space only where no edge or mirror is between
     std::vector<SeenEmission> emission;      ///< that of a pixel follows each other
     double weight_cut = 0.0;      ///< throughput of the branches that were ended, mean channel, mean over pixels
     std::uint64_t nonfinite = 0;  ///< camera paths that met a non-finite value

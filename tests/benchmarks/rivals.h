@@ -96,7 +96,7 @@ public:
 
     template <typename Visit>
     void within(const GatherQuery& query, const Visit& visit) const {
-        Visitor<Visit> visitor{photons_.list, query, pruning_bound(query.radius * query.radius), visit};
+        Visitor<Visit> visitor{photons_.list, query, squared_bound(query.radius), visit};
         index_->findNeighbors(visitor, &query.position.x, {});
     }
 

@@ -154,8 +154,8 @@ TEST(ConcaveCorner, LeaksWithoutTheTestOfNormalsAndNotWithIt) {
 
         double leaked = 0.0;
         for (const Photon& photon : photons)
-            leaked +=
-                photon.normal.unit() == sideways && squared_distance_between(photon.position, position) <= radius * radius;
+            leaked += photon.normal.unit() == sideways &&
+                      squared_distance_between(photon.position, position) <= radius * radius;
         const double squared_distance = static_cast<double>(d) * d;
         const double leak = wall_irradiance * (radius * radius - squared_distance) / (2.0 * radius * radius);
         EXPECT_LT(std::abs(binomial_z(leaked, wall_photons, leak / wall_irradiance * pi * radius * radius)), z_limit)

@@ -43,33 +43,62 @@ double distance(const Vector& a, const Vector& b) {
     return (VectorD(a) - VectorD(b)).length();
 }
 
-TEST(PhotonGroups, HoldEveryPhotonOnceInItsOrderAndInsideItsBall) {
+/// A dense patch of this size, and as many photons around it in the unit box.
+std::vector<Vector> patch_in_a_box(std::size_t count, float size) {
+    std::vector<Vector> positions = random_positions(count, size);
+    for (const Vector& position : random_positions(count - 1, 1.0f)) positions.push_back(position);
+    return positions;
+}
+
+TEST(PhotonGroups, HoldEveryPhotonOnceAndInsideItsBall) {
     for (const std::vector<Vector>& positions :
          {std::vector<Vector>{}, random_positions(1, 1.0f), random_positions(15, 1.0f), random_positions(16, 1e-12f),
-          random_positions(1000, 1e17f), jumping_line(500, 37), std::vector<Vector>(100, Vector(0.1f))}) {
+          random_positions(1000, 1e17f), jumping_line(500, 37), std::vector<Vector>(10'000, Vector(0.1f)),
+          patch_in_a_box(10'000, 1e-3f), patch_in_a_box(10'000, 1e-30f)}) {
         const PhotonGroups groups(photons_at(positions));
+        std::vector<int> seen(positions.size(), 0);
         std::size_t next = 0;
-        float largest = 0.0f;
-        for (const PhotonGroup& group : groups.list()) {
-            ASSERT_EQ(group.first, next);
-            ASSERT_GE(group.count, 1u);
-            ASSERT_LE(group.count, PhotonGroups::capacity);
-            for (; next < group.first + group.count; ++next) {
-                EXPECT_EQ(groups.position(next), positions[next]);
-                EXPECT_LE(distance(positions[next], group.centre), group.radius);
+        for (const GroupTier& tier : groups.tiers()) {
+            ASSERT_EQ(tier.first, next);
+            ASSERT_GT(tier.end, tier.first);
+            float largest = 0.0f;
+            for (; next < tier.end; ++next) {
+                const PhotonGroup& group = groups.list()[next];
+                ASSERT_GE(group.count, 1u);
+                ASSERT_LE(group.count, PhotonGroups::capacity);
+                for (std::size_t i = group.first; i < group.first + group.count; ++i) {
+                    ++seen.at(i);
+                    EXPECT_EQ(groups.position(i), positions[i]);
+                    EXPECT_LE(distance(positions[i], group.centre), group.radius);
+                }
+                largest = std::max(largest, group.radius);
             }
-            largest = std::max(largest, group.radius);
+            EXPECT_EQ(tier.largest_radius, largest);
         }
-        EXPECT_EQ(next, positions.size());
-        EXPECT_EQ(groups.largest_radius(), largest);
+        EXPECT_EQ(next, groups.list().size());
+        EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<std::ptrdiff_t>(positions.size()));
     }
 }
 
 TEST(PhotonGroups, EndWhereTheCurveJumps) {
     // 16 do not divide 100: without that, a sixth of the groups would be a thousand times as wide as the others.
     const PhotonGroups groups(photons_at(jumping_line(10'000, 100)));
-    EXPECT_LT(groups.largest_radius(), 0.01f);
+    ASSERT_EQ(groups.tiers().size(), 1u);
+    EXPECT_LT(groups.tiers()[0].largest_radius, 0.01f);
     EXPECT_LE(groups.list().size(), 700u);
+}
+
+TEST(PhotonGroups, AreApartFromThoseThatAreMuchDenser) {
+    // Along a line: 30,000 photons a millionth apart, then 30,000 a thousandth apart.
+    std::vector<Vector> positions;
+    for (int i = 0; i < 60'000; ++i)
+        positions.emplace_back(i < 30'000 ? 1e-6f * static_cast<float>(i) : 1e-3f * static_cast<float>(i - 29'900),
+                               0.0f, 0.0f);
+    const PhotonGroups groups(photons_at(positions));
+    ASSERT_EQ(groups.tiers().size(), 2u);
+    EXPECT_LT(groups.tiers()[0].largest_radius, 1e-5f);
+    EXPECT_LT(groups.tiers()[1].largest_radius, 1e-2f);
+    EXPECT_NEAR(static_cast<double>(groups.tiers()[0].end), 30'000.0 / 16.0, 10.0);
 }
 
 TEST(PhotonGroups, FindThoseWithinABound) {

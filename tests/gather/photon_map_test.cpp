@@ -79,6 +79,11 @@ std::vector<PhotonSet> photon_sets() {
     sets.push_back(photon_set("tiny patch at the origin", 1000, [](RandomStream& random, std::size_t i) {
         return i % 3 == 0 ? random_point(random, 1.0f) : random_point(random, 4e-12f);
     }));
+    // Of several tiers, and denser than the cells of one Morton curve.
+    sets.push_back(photon_set("caustic in a caustic", 30'000, [](RandomStream& random, std::size_t i) {
+        const float sizes[] = {1.0f, 1.0f, 1e-2f, 1e-4f};
+        return Vector(0.1f, 0.2f, 0.3f) + random_point(random, sizes[i % 4]);
+    }));
     sets.push_back(photon_set("collinear", 1000, [](RandomStream& random, std::size_t) {
         return Vector(1.0f, 2.0f, -0.5f) * (0.4f * (random.next() - 0.5f));
     }));
@@ -213,6 +218,17 @@ TEST(PhotonMapWithin, TakesAnInfiniteRadiusAsEverything) {
               numbers_by_brute_force(set.photons, Vector(0.2f), up, 1e3));
 }
 
+TEST(PhotonMapWithin, AQueryThatFindsNothingCostsItsNeighboursNothing) {
+    const PhotonMap map({photon_at(Vector(0.0f), 0)});
+    const double endless = std::numeric_limits<double>::infinity();
+    for (const float far : {1e20f, infinity}) {
+        std::vector<std::size_t> found;
+        map.within_each({{Vector(0.0f), up, endless}, {Vector(far, 0.0f, 0.0f), up, endless}},
+                        [&](std::size_t query, const Photon&, double) { found.push_back(query); });
+        EXPECT_EQ(found, std::vector<std::size_t>{0}) << far;
+    }
+}
+
 TEST(PhotonMapWithin, AnswersNothingForANonFiniteQuery) {
     const PhotonMap map({photon_at(Vector(0.0f), 0)});
     const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -222,7 +238,7 @@ TEST(PhotonMapWithin, AnswersNothingForANonFiniteQuery) {
     EXPECT_EQ(count_within(map, Vector(0.0f), up, std::numeric_limits<double>::quiet_NaN()), 0u);
 }
 
-// A cell is left out only when all of it lies beyond r / sqrt(1 + eps): what is nearer is always found.
+// A group is left out only when all of it lies beyond r / sqrt(1 + eps): what is nearer is always found.
 TEST(PhotonMapWithin, WithEpsMissesPhotonsNearTheRimAlone) {
     std::size_t missed = 0;
     for (const PhotonSet& set : photon_sets()) {
@@ -340,6 +356,25 @@ TEST(PhotonMapNearest, FindsExactlyWhatBruteForceFinds) {
             }
     }
     EXPECT_GT(compared, 100'000u);
+}
+
+TEST(PhotonMapNearest, FindsWhatIsNearerThanFloatCanSquare) {
+    // The k-th distance is 7e-23: its square is a denormal float, whose rounding is as large as itself.
+    const PhotonMap map({photon_at(Vector(-0x1.7ddaa6p-75f, 0x1.c0d578p-75f, -0x1.67a312p-75f), 0),
+                         photon_at(Vector(-0x1.1d3cacp-75f, -0x1.8f094p-75f, -0x1.61adecp-75f), 1),
+                         photon_at(Vector(-0x1.73e2e6p-75f, -0x1.66fa4ep-76f, 0x1.df2ccap-76f), 2)});
+    const Vector position(0x1.acc06p-76f, 0x1.35d31ap-77f, -0x1.4ff934p-77f);
+    double nearest = infinity;
+    map.nearest(position, up, 2, 1.0, [&](const Photon&, double d_squared, double) { nearest = std::sqrt(d_squared); });
+    EXPECT_NEAR(nearest, 7.416e-23, 1e-26);
+
+    for (const double eps : {0.0, 1e30, 1e300}) {
+        const PhotonMap here({photon_at(Vector(0.25f), 0)});
+        std::size_t found = 0;
+        here.within_each(
+            {{Vector(0.25f), up, 0.1}}, [&](std::size_t, const Photon&, double) { ++found; }, eps);
+        EXPECT_EQ(found, 1u) << eps;
+    }
 }
 
 // The i-th that is found is no farther than the i-th there is, but for a factor of 1 + eps in the squared distance.
