@@ -267,9 +267,10 @@ public:
 
 private:
     void set_bounds() {
-        const double reach = std::min(sink_.reach(), static_cast<double>(std::numeric_limits<float>::max()));
+        const double reach = sink_.reach();
         // Not below what float can square, however near the k-th photon is.
-        const double opened = std::max(reach * opened_share_, PhotonMap::minimum_radius);
+        const double opened = std::clamp(reach * opened_share_, PhotonMap::minimum_radius,
+                                         static_cast<double>(std::numeric_limits<float>::max()));
         opened_ = static_cast<float>(opened);
         squared_photon_bound_ = squared_bound(reach);
         squared_group_bound_ = squared_bound(opened + tier_.largest_radius);

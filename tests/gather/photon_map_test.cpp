@@ -214,8 +214,13 @@ TEST(PhotonMapWithin, TakesAnInfiniteRadiusAsEverything) {
     const PhotonSet set =
         photon_set("all", 500, [](RandomStream& random, std::size_t) { return random_point(random, 1.0f); });
     const PhotonMap map(set.photons);
-    EXPECT_EQ(numbers_within(map, Vector(0.2f), up, std::numeric_limits<double>::infinity()),
-              numbers_by_brute_force(set.photons, Vector(0.2f), up, 1e3));
+    const auto all = numbers_by_brute_force(set.photons, Vector(0.2f), up, 1e3);
+    EXPECT_EQ(numbers_within(map, Vector(0.2f), up, std::numeric_limits<double>::infinity()), all);
+    // With eps as large, what must be found is still all of it.
+    std::size_t found = 0;
+    map.within_each(
+        {{Vector(0.2f), up, 1e300}}, [&](std::size_t, const Photon&, double) { ++found; }, 1e300);
+    EXPECT_EQ(found, all.size());
 }
 
 TEST(PhotonMapWithin, AQueryThatFindsNothingCostsItsNeighboursNothing) {
