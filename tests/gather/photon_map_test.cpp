@@ -643,6 +643,25 @@ TEST(PhotonMap, ConcurrentQueriesAreBitwiseEqualToSerialOnes) {
     for (int repetition = 0; repetition < 3; ++repetition) ASSERT_EQ(ask(4), serial);
 }
 
+// A patch far smaller than a cell of the scene's Morton curve: in the order of the paths, or of such cells alone,
+// photons that follow each other would be half of the patch apart.
+TEST(PhotonMap, HoldsNeighboursNextToEachOtherHoweverDenseTheyAre) {
+    constexpr float patch = 1e-5f;
+    PhotonSet set = photon_set("patch", 20'000, [&](RandomStream& random, std::size_t) {
+        const Vector point = random_point(random, patch);
+        return Vector(point.x, point.y, 0.0f);
+    });
+    for (Photon& photon : set.photons) photon = photon_at(photon.position, number_of(photon));
+    set.photons.push_back(photon_at(Vector(1.0f), set.photons.size()));
+    const PhotonMap map(set.photons);
+    std::vector<Vector> visited;
+    map.within(Vector(0.0f), up, patch, [&](const Photon& photon, double) { visited.push_back(photon.position); });
+    ASSERT_EQ(visited.size(), 20'000u);
+    double way = 0.0;
+    for (std::size_t i = 1; i < visited.size(); ++i) way += (visited[i] - visited[i - 1]).length();
+    EXPECT_LT(way / 20'000.0, 0.05 * patch);
+}
+
 TEST(PhotonMap, CanBeMovedAndStillAnswers) {
     static_assert(!std::is_copy_constructible_v<PhotonMap>);
     const PhotonSet set =
