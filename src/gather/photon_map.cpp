@@ -23,8 +23,8 @@ std::size_t index_of(SortKey key) {
     return static_cast<std::size_t>(key & 0xffffffffu);
 }
 
-/// By place, then by index: a stable least-significant-digit radix sort, or for few keys, whose indices ascend or not,
-/// an ordinary one.
+/// By place, then by index, by which they are sorted already: a stable least-significant-digit radix sort, or for few
+/// keys an ordinary one.
 void sort_keys(std::span<SortKey> keys) {
     constexpr std::size_t few = 2048;
     if (keys.size() <= few) return std::sort(keys.begin(), keys.end());

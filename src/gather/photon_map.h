@@ -156,8 +156,8 @@ inline float squared_bound(double radius) {
                                        static_cast<double>(std::numeric_limits<float>::max())));
 }
 
-/// Queries that one search answers: at most 16, in a box whose half-diagonal is at most sqrt(8) of the largest radius,
-/// and with radii that differ by a factor of two at most. Wider and narrower ones were slower, early and late.
+/// Queries that one search answers: at most 16, in a box whose half-diagonal is at most four of the largest radius, and
+/// with radii that differ by a factor of two at most. Wider and narrower ones were slower, early and late.
 class QueryCluster {
 public:
     static constexpr std::size_t capacity = 16;
