@@ -28,6 +28,7 @@
 #include <vector>
 
 #include "core/math.h"
+#include "core/morton.h"
 #include "gather/photon_groups.h"
 #include "transport/photons.h"
 
@@ -164,19 +165,15 @@ public:
 
     /// The longest cluster from query `first` on, of at most `most` queries (1 to capacity).
     QueryCluster(const std::vector<GatherQuery>& queries, std::size_t first, std::size_t most) : first_(first) {
-        Vector lower = queries[first].position;
-        Vector upper = lower;
+        Box box;
         double smallest = queries[first].radius;
         double largest = smallest;
         for (std::size_t i = first; i < queries.size() && count_ < most; ++i) {
             const GatherQuery& query = queries[i];
-            for (int axis = 0; axis < 3; ++axis) {
-                lower[axis] = std::min(lower[axis], query.position[axis]);
-                upper[axis] = std::max(upper[axis], query.position[axis]);
-            }
+            box.include(query.position);
             smallest = std::min(smallest, query.radius);
             largest = std::max(largest, query.radius);
-            const float squared_diagonal = (upper - lower).length2();
+            const float squared_diagonal = box.squared_diagonal();
             const bool is_compact = std::isfinite(squared_diagonal) && squared_diagonal <= 64.0 * largest * largest &&
                                     largest <= 2.0 * smallest;
             if (count_ > 0 && !is_compact) break;
@@ -186,7 +183,7 @@ public:
             const double radius = std::max(query.radius, PhotonMap::minimum_radius);
             squared_radius_[count_] = radius * radius;
             ++count_;
-            centre_ = (lower + upper) * 0.5f;
+            centre_ = (box.lower + box.upper) * 0.5f;
         }
         for (std::size_t i = count_; i < capacity; ++i) {
             x_[i] = y_[i] = z_[i] = 0.0;
