@@ -6,12 +6,12 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <type_traits>
 
 #include "app/commands.h"
 #include "app/options.h"
 #include "experiment/experiment_file.h"
+#include "integrators/density_estimate.h"
 #include "scene/loader.h"
 #include "scene/narrow_gaps.h"
 #include "transport/hit_points.h"
@@ -66,6 +66,14 @@ void print_emitters(const Scene& scene) {
     }
 }
 
+/// Mean over hit points of the radius that a method begins with where none is given, in scene units.
+double mean_automatic_radius(const Scene& scene, const HitPoints& hit_points) {
+    const IntegratorContext context{.scene = scene, .hit_points = hit_points};
+    double sum = 0.0;
+    for (std::size_t i = 0; i < hit_points.points.size(); ++i) sum += initial_radius(MethodSettings{}, context, i);
+    return sum / static_cast<double>(hit_points.points.size()) * scene.unit_length;
+}
+
 void print_narrow_gaps(const Scene& scene) {
     const NarrowGaps gaps = find_narrow_gaps(scene);
     if (!gaps.first) return;
@@ -99,11 +107,8 @@ void info(const InfoOptions& options) {
     const HitPoints hit_points = trace_hit_points(scene, 1, hardware_threads());
     const std::size_t count = hit_points.points.size();
     fmt::print("hit points  {} at one sample a pixel\n", count);
-    if (count > 0) {
-        const double sum = std::accumulate(hit_points.footprints.begin(), hit_points.footprints.end(), 0.0);
-        fmt::print("auto radius {:.6g} in the mean (scene units)\n",
-                   3.0 * sum / static_cast<double>(count) * scene.unit_length);
-    }
+    if (count > 0)
+        fmt::print("auto radius {:.6g} in the mean (scene units)\n", mean_automatic_radius(scene, hit_points));
     fmt::print("photons     {} bytes each, one kind\n", sizeof(Photon));
     for (const std::string& what : what_is_left_out(scene, hit_points)) fmt::print("left out    {}\n", what);
     for (const std::string& note : scene.notes) fmt::print("note        {}\n", note);

@@ -128,9 +128,10 @@ const std::vector<SettingField>& setting_fields() {
                                              "photonmapper, mode nearest: largest radius in the caustic map in scene "
                                              "units, or auto: a quarter of --max-radius"),
         field<&Settings::kernel>("kernel", "--kernel", "ppm, photonmapper: disc, cone, epanechnikov or biweight"),
-        field<&Settings::eps>("eps", "--eps",
-                              "ppm, photonmapper: cells of the tree are searched when their squared distance times "
-                              "1 + eps is within the radius; 0 is exact"),
+        field<&Settings::eps>(
+            "eps", "--eps",
+            "ppm, photonmapper: inexactness of the search for photons, at least 0: a group of them is looked at "
+            "when its squared distance times 1 + eps is within the squared radius; 0 is exact"),
         field<&Settings::direct>("direct", "--direct", "direct light from shadow rays (sampled) or from photons"),
         field<&Settings::direct_samples>("direct_samples", "--direct-samples", "shadow rays a hit point and pass"),
         field<&Settings::max_depth>("max_depth", "--max-depth",
