@@ -14,11 +14,14 @@ import sys
 from pathlib import Path
 
 try:
+    import files
     import fits
     import numpy
     import records
     import style
+    import tables
     from bias_variance import COMPONENT_TITLES
+    from files import InputError
     from matplotlib import lines, patches
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, scipy, pandas, matplotlib and OpenImageIO (on "
@@ -33,14 +36,12 @@ LINE = {"color": "black", "marker": "o", "markeredgecolor": "white", "markeredge
 def read_best(results):
     """Rows of RESULTS/best-alphas.csv: best alpha and paths as numbers, candidates as lists of them."""
     file = Path(results) / "best-alphas.csv"
-    if not file.is_file():
-        raise records.RecordError(f"{file}: is not there; run fits.py on an experiment that sweeps alpha")
-    rows = records.read_table(file)
-    missing = set(fits.BEST_COLUMNS) - set(rows.columns)
-    if missing:
-        raise records.RecordError(f"{file}: lacks the columns {', '.join(sorted(missing))}; run fits.py again")
+    if not files.is_there(file):
+        raise InputError(f"{file}: is not there; run fits.py on an experiment that sweeps alpha")
+    rows = tables.read_table(file)
+    tables.require_columns(file, rows, fits.BEST_COLUMNS, "run fits.py again")
     for column in ["paths_emitted", "best_alpha"]:
-        rows[column] = records.to_numbers(file, rows[column], whole=False)
+        rows[column] = tables.to_numbers(file, rows[column])
     rows["candidates"] = [[float(alpha) for alpha in text.split(";") if alpha] for text in rows["candidates"]]
     return rows
 
@@ -100,6 +101,7 @@ def draw_scene(rows):
     return figure
 
 
+@files.command
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
                                      formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -107,19 +109,15 @@ def main(arguments):
                                      __doc__.split("\n\n", 1)[1])
     parser.add_argument("results", metavar="RESULTS_DIR", type=Path, help="folder of an experiment's results")
     results = parser.parse_args(arguments).results
-    try:
-        for scene, rows in read_best(results).groupby("scene", sort=False):
-            figure = draw_scene(rows)
-            if figure is None:
-                print(f"{scene}: no paths were recorded, so there is nothing to draw against")
-                continue
-            for file in style.save(figure, results, f"best-alpha-{records.file_name(scene)}"):
-                print(file)
-    except (records.RecordError, OSError) as error:
-        print(error, file=sys.stderr)
-        return 2
+    for scene, rows in read_best(results).groupby("scene", sort=False):
+        figure = draw_scene(rows)
+        if figure is None:
+            print(f"{scene}: no paths were recorded, so there is nothing to draw against")
+            continue
+        for file in style.save(figure, results, f"best-alpha-{records.file_name(scene)}"):
+            print(file)
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    files.run(main)

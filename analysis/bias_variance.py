@@ -16,11 +16,14 @@ from pathlib import Path
 
 try:
     import decomposition
+    import files
     import fits
     import numpy
     import records
     import style
+    import tables
     from convergence import BELOW_MARK
+    from files import InputError
     from matplotlib import lines
     from matplotlib.transforms import blended_transform_factory
 except ImportError as error:
@@ -42,15 +45,13 @@ THEORY_LINES = {"squared_bias": {"linewidth": 0.7, "linestyle": (0, (1, 1.5)), "
 def read_decomposition(results):
     """Rows of RESULTS/decomposition.csv with estimates and errors as numbers, NaN where there are none."""
     file = Path(results) / "decomposition.csv"
-    if not file.is_file():
-        raise records.RecordError(f"{file}: is not there; run decomposition.py first")
-    rows = records.read_table(file)
+    if not files.is_there(file):
+        raise InputError(f"{file}: is not there; run decomposition.py first")
+    rows = tables.read_table(file)
     numbers = ["pass", "seeds", "groups", "paths_emitted", "seconds", *(column for quantity in TITLES for column in [quantity, f"{quantity}_error"])]
-    missing = {*numbers, "scene", "point", "component", "region"} - set(rows.columns)
-    if missing:
-        raise records.RecordError(f"{file}: lacks the columns {', '.join(sorted(missing))}; run decomposition.py again")
+    tables.require_columns(file, rows, ["scene", "point", "component", "region", *numbers], "run decomposition.py again")
     for column in numbers:
-        rows[column] = records.to_numbers(file, rows[column], whole=column in ["pass", "seeds", "groups"])
+        rows[column] = tables.to_numbers(file, rows[column], whole=column in ["pass", "seeds", "groups"])
     return rows
 
 
@@ -215,6 +216,7 @@ def draw_scene(recorded, rows, labels, against="passes", roots=False):
     return figure
 
 
+@files.command
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
                                      formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -227,29 +229,25 @@ def main(arguments):
     parser.add_argument("--roots", action="store_true", help="draw RMSE and the roots of variance and squared bias, in radiance")
     options = parser.parse_args(arguments)
     results = options.results
-    try:
-        recorded = records.read_records(results)
-        rows = read_decomposition(results)
-        unknown = set(rows["point"]) - set(recorded["run"].map(decomposition.point_of))
-        if unknown:
-            raise records.RecordError(f"{results / 'decomposition.csv'}: {min(unknown)} is not in iterations.csv; run "
-                                      "decomposition.py again")
-        labels = records.methods_in_order(recorded)
-        for scene, scene_rows in rows.groupby("scene", sort=False):
-            of_scene = recorded[recorded["scene"] == scene]
-            figure = draw_scene(of_scene, scene_rows, [label for label in labels if label in set(of_scene["method"])],
-                                options.against, options.roots)
-            if figure is None:
-                print(f"{scene}: nothing is resolved, so there is nothing to draw")
-                continue
-            extra = ("-roots" if options.roots else "") + (f"-{options.against}" if options.against != "passes" else "")
-            for file in style.save(figure, results, f"bias-variance-{records.file_name(scene)}{extra}"):
-                print(file)
-    except (records.RecordError, OSError) as error:
-        print(error, file=sys.stderr)
-        return 2
+    recorded = records.read_records(results)
+    rows = read_decomposition(results)
+    unknown = set(rows["point"]) - set(recorded["run"].map(decomposition.point_of))
+    if unknown:
+        raise InputError(f"{results / 'decomposition.csv'}: {min(unknown)} is not in iterations.csv; run "
+                                  "decomposition.py again")
+    labels = records.methods_in_order(recorded)
+    for scene, scene_rows in rows.groupby("scene", sort=False):
+        of_scene = recorded[recorded["scene"] == scene]
+        figure = draw_scene(of_scene, scene_rows, [label for label in labels if label in set(of_scene["method"])],
+                            options.against, options.roots)
+        if figure is None:
+            print(f"{scene}: nothing is resolved, so there is nothing to draw")
+            continue
+        extra = ("-roots" if options.roots else "") + (f"-{options.against}" if options.against != "passes" else "")
+        for file in style.save(figure, results, f"bias-variance-{records.file_name(scene)}{extra}"):
+            print(file)
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    files.run(main)

@@ -13,6 +13,7 @@ import sys
 from pathlib import Path
 
 try:
+    import files
     import records
     import style
     from matplotlib import lines
@@ -144,6 +145,7 @@ def draw_scene(scene_rows, labels):
     return figure
 
 
+@files.command
 def main(arguments):
     parser = argparse.ArgumentParser(
         description=__doc__.split("\n\n")[0], formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -151,21 +153,17 @@ def main(arguments):
     parser.add_argument("results", metavar="RESULTS_DIR", type=Path,
                         help="folder of an experiment's results: iterations.csv is in it")
     results = parser.parse_args(arguments).results
-    try:
-        rows = records.read_records(results)
-        labels = records.methods_in_order(rows)
-        for scene, scene_rows in rows.groupby("scene", sort=False):
-            figure = draw_scene(scene_rows, [label for label in labels if label in set(scene_rows["method"])])
-            if figure is None:
-                print(f"{scene}: no errors were recorded (was there a reference?), so no convergence plot")
-                continue
-            for file in style.save(figure, results, f"convergence-{records.file_name(scene)}"):
-                print(file)
-    except (records.RecordError, OSError) as error:
-        print(error, file=sys.stderr)
-        return 2
+    rows = records.read_records(results)
+    labels = records.methods_in_order(rows)
+    for scene, scene_rows in rows.groupby("scene", sort=False):
+        figure = draw_scene(scene_rows, [label for label in labels if label in set(scene_rows["method"])])
+        if figure is None:
+            print(f"{scene}: no errors were recorded (was there a reference?), so no convergence plot")
+            continue
+        for file in style.save(figure, results, f"convergence-{records.file_name(scene)}"):
+            print(file)
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    files.run(main)

@@ -20,17 +20,17 @@ them. Where a bias is lost in noise they are too large, by a factor of up to the
 """
 
 import argparse
-import csv
-import json
 import sys
 from dataclasses import dataclass
 from pathlib import Path
 
 try:
+    import files
     import numpy
-    import OpenImageIO
     import pictures
     import records
+    import tables
+    from files import InputError
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas and OpenImageIO (on Debian: "
           "/usr/bin/python3 with python3-pandas and python3-openimageio)", file=sys.stderr)
@@ -68,24 +68,17 @@ class Ensemble:
 
 def read_slot(file):
     """(seeds, {layer: mean over them}) of one file of sums."""
-    image = OpenImageIO.ImageInput.open(str(file))
-    if image is None:
-        raise records.RecordError(f"{file}: cannot be read as an image: {OpenImageIO.geterror()}")
-    spec = image.spec()
-    pixels = image.read_image(OpenImageIO.FLOAT)
-    image.close()
+    spec, pixels = pictures.read_image(file)
     seeds = str(spec.getattribute("photonlab.seeds") or "").split()
-    if pixels is None:
-        raise records.RecordError(f"{file}: its pixels cannot be read; is it whole?")
     if not seeds or not all(seed.isdecimal() for seed in seeds):
-        raise records.RecordError(f"{file}: expected sums of images with the attribute photonlab.seeds")
+        raise InputError(f"{file}: expected sums of images with the attribute photonlab.seeds")
     places = {}
     for index, name in enumerate(spec.channelnames):
         layer, _, channel = name.rpartition(".")
         if layer:
             places.setdefault(layer, {})[channel] = index
     if not all(set(channels) == set("RGB") for channels in places.values()):
-        raise records.RecordError(f"{file}: expected the channels R, G and B of each layer")
+        raise InputError(f"{file}: expected the channels R, G and B of each layer")
     return [int(seed) for seed in seeds], {
         layer: pixels[:, :, [channels[channel] for channel in "RGB"]].astype(numpy.float64) / len(seeds)
         for layer, channels in places.items()}
@@ -108,35 +101,38 @@ DESCRIPTION = {
 }
 
 
-def read_ensemble(folder):
+def read_description(folder):
+    """ensemble.json, checked."""
     file = Path(folder) / "ensemble.json"
-    try:
-        description = json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise records.RecordError(f"{file}: is not the description of an ensemble: {error}") from error
+    description = files.read_json(file)
     if not isinstance(description, dict):
-        raise records.RecordError(f"{file}: is not the description of an ensemble")
+        raise InputError(f"{file}: is not the description of an ensemble")
     for key, (is_sound, expected) in DESCRIPTION.items():
         if key not in description or not is_sound(description[key]):
-            raise records.RecordError(f"{file}: {key}: expected {expected}")
+            raise InputError(f"{file}: {key}: expected {expected}")
     if not isinstance(description.get("working_directory", ""), str):
-        raise records.RecordError(f"{file}: working_directory: expected a path")
+        raise InputError(f"{file}: working_directory: expected a path")
+    return description
+
+
+def read_ensemble(folder):
+    description = read_description(folder)
     seeds, layers = [], []
     for slot in sorted(Path(folder).glob("slot-*.exr")):
         own_seeds, own_layers = read_slot(slot)
         expected = {"emission", *(f"pass-{number:06}-{layer}" for number in description["passes"]
                                   for layer in ["direct", "gathered"])}
         if set(own_layers) != expected:
-            raise records.RecordError(f"{slot}: expected the layers of the passes in ensemble.json")
+            raise InputError(f"{slot}: expected the layers of the passes in ensemble.json")
         if layers and own_layers["emission"].shape != layers[0]["emission"].shape:
-            raise records.RecordError(f"{slot}: is of another size than the sums beside it")
+            raise InputError(f"{slot}: is of another size than the sums beside it")
         seeds.append(own_seeds)
         layers.append(own_layers)
     if len(seeds) < 2:
-        raise records.RecordError(f"{folder}: expected at least two seeds, found {len(seeds)}")
+        raise InputError(f"{folder}: expected at least two seeds, found {len(seeds)}")
     all_seeds = [seed for group in seeds for seed in group]
     if len(set(all_seeds)) < len(all_seeds):
-        raise records.RecordError(f"{folder}: expected each seed in one slot; remove the folder and run the experiment again")
+        raise InputError(f"{folder}: expected each seed in one slot; remove the folder and run the experiment again")
     return Ensemble(Path(folder), description, seeds, layers)
 
 
@@ -144,7 +140,7 @@ def read_ensembles(results):
     """Ensembles of a results folder, one after another: only one is in memory at a time."""
     folders = sorted((Path(results) / "ensembles").glob("*/"))
     if not folders:
-        raise records.RecordError(f"{results}: has no ensembles; expected an experiment with decomposition = true")
+        raise InputError(f"{results}: has no ensembles; expected an experiment with decomposition = true")
     for folder in folders:
         yield read_ensemble(folder)
 
@@ -154,14 +150,14 @@ def read_halves(ensemble, results, component):
     if ensemble.description["reference"] is None:
         return []
     carried = ensemble.description["photons_carry_direct"]
-    files = records.reference_files(results, ensemble.description)
-    if not files:
-        raise records.RecordError(f"{ensemble.folder}: its reference {ensemble.description['reference']['path']} is not there; "
+    found = records.reference_files(results, ensemble.description)
+    if not found:
+        raise InputError(f"{ensemble.folder}: its reference {ensemble.description['reference']['path']} is not there; "
                                   "expected an EXR, or a folder of half_a.exr and half_b.exr")
-    halves = [pictures.read_component(file, component, carried) for file in files]
-    for file, half in zip(files, halves):
+    halves = [pictures.read_component(file, component, carried) for file in found]
+    for file, half in zip(found, halves):
         if half is not None and half.shape != ensemble.layers[0]["emission"].shape:
-            raise records.RecordError(f"{ensemble.folder}: its reference is of another size than its images: {file}")
+            raise InputError(f"{ensemble.folder}: its reference is of another size than its images: {file}")
     return halves if all(half is not None for half in halves) else []
 
 
@@ -170,7 +166,7 @@ def regions_of(ensemble, shape):
     regions = {WHOLE: (slice(0, shape[0]), slice(0, shape[1]))}
     for name, (left, top, right, bottom) in ensemble.description["regions"].items():
         if not (left < right <= shape[1] and top < bottom <= shape[0]):
-            raise records.RecordError(f"{ensemble.folder}: expected the region {name} inside {shape[1]}x{shape[0]} pixels, and not "
+            raise InputError(f"{ensemble.folder}: expected the region {name} inside {shape[1]}x{shape[0]} pixels, and not "
                                       "empty")
         regions[name] = (slice(top, bottom), slice(left, right))
     return regions
@@ -275,7 +271,7 @@ def rows_of(ensemble, recorded):
         return None
     summed = {seed for group in ensemble.seeds for seed in group}
     if not set(rows["seed"].astype(int)) <= summed:
-        raise records.RecordError(f"{ensemble.folder}: lacks seeds that iterations.csv has; run the experiment again")
+        raise InputError(f"{ensemble.folder}: lacks seeds that iterations.csv has; run the experiment again")
     return rows
 
 
@@ -315,7 +311,7 @@ def pass_of_images(ensemble, wanted):
     """The pass that was asked for, or the last."""
     passes = ensemble.description["passes"]
     if wanted is not None and wanted not in passes:
-        raise records.RecordError(f"{ensemble.folder}: pass {wanted} was not recorded; expected one of "
+        raise InputError(f"{ensemble.folder}: pass {wanted} was not recorded; expected one of "
                                   f"{', '.join(map(str, sorted(passes)))} for --images")
     return max(passes) if wanted is None else wanted
 
@@ -332,25 +328,11 @@ def write_images(ensemble, results, number):
     variance = numpy.tensordot(counts, (images - mean) ** 2, axes=1) / (len(counts) - 1)
     bias = mean - sum(halves) / len(halves)
     file = Path(results) / "decomposition" / ensemble.point / f"pass-{number:06}.exr"
-    file.parent.mkdir(parents=True, exist_ok=True)
-    channels = [f"{prefix}{channel}" for prefix in ["", "bias.", "variance."] for channel in "RGB"]
-    spec = OpenImageIO.ImageSpec(mean.shape[1], mean.shape[0], len(channels), "float")
-    spec.channelnames = channels
-    output = OpenImageIO.ImageOutput.create(str(file))
-    pixels = numpy.concatenate([bias, bias, variance], axis=2).astype(numpy.float32)
-    if output is None or not output.open(str(file), spec) or not output.write_image(pixels) or not output.close():
-        raise records.RecordError(f"{file}: cannot be written: {output.geterror() if output else OpenImageIO.geterror()}")
-    return file
+    return pictures.write_exr(file, [f"{prefix}{channel}" for prefix in ["", "bias.", "variance."] for channel in "RGB"],
+                              numpy.concatenate([bias, bias, variance], axis=2))
 
 
-def write_table(file, columns, table):
-    with open(file, "w", newline="", encoding="utf-8") as stream:
-        writer = csv.DictWriter(stream, columns, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(table)
-    print(file)
-
-
+@files.command
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
                                      formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -361,21 +343,17 @@ def main(arguments):
                         "last)")
     options = parser.parse_args(arguments)
     results = options.results
-    try:
-        recorded = records.read_records(results)
-        table = []
-        for ensemble in read_ensembles(results):
-            own = rows_of(ensemble, recorded)
-            if own is None:
-                continue
-            table += table_of(ensemble, results, own)
-            write_images(ensemble, results, pass_of_images(ensemble, options.images))
-        write_table(results / "decomposition.csv", COLUMNS, table)
-    except (records.RecordError, OSError) as error:
-        print(error, file=sys.stderr)
-        return 2
+    recorded = records.read_records(results)
+    table = []
+    for ensemble in read_ensembles(results):
+        own = rows_of(ensemble, recorded)
+        if own is None:
+            continue
+        table += table_of(ensemble, results, own)
+        write_images(ensemble, results, pass_of_images(ensemble, options.images))
+    print(tables.write_table(results / "decomposition.csv", COLUMNS, table))
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    files.run(main)

@@ -13,8 +13,6 @@ Budgets are powers of two of a second that at least one method reaches; the pict
 """
 
 import argparse
-import csv
-import json
 import math
 import sys
 from pathlib import Path
@@ -22,10 +20,12 @@ from pathlib import Path
 try:
     import bias_variance
     import decomposition
+    import files
     import numpy
     import pictures
     import records
     import style
+    import tables
     from matplotlib import patches
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, scipy, pandas, matplotlib and OpenImageIO (on "
@@ -111,7 +111,7 @@ def table_of(scene, curves):
 
 def read_split(results, recorded):
     """Rows of decomposition.csv with the method that each point is; None where the file is not there."""
-    if not (results / "decomposition.csv").is_file():
+    if not files.is_there(results / "decomposition.csv"):
         return None
     rows = bias_variance.read_decomposition(results)
     method_of = recorded.assign(point=recorded["run"].map(decomposition.point_of)).drop_duplicates("point").set_index("point")
@@ -120,13 +120,10 @@ def read_split(results, recorded):
 
 def regions_of(results, scene):
     """{name: (left, top, right, bottom)} of a scene's regions, from its ensembles; {} where there are none."""
-    for file in sorted((results / "ensembles").glob("*/ensemble.json")):
-        try:
-            description = json.loads(file.read_text(encoding="utf-8"))
-            if description["scene"] == scene:
-                return description["regions"]
-        except (ValueError, KeyError, TypeError) as error:
-            raise records.RecordError(f"{file}: is not the description of an ensemble: {error}") from error
+    for folder in sorted((results / "ensembles").glob("*/")):
+        description = decomposition.read_description(folder)
+        if description["scene"] == scene:
+            return description["regions"]
     return {}
 
 
@@ -143,18 +140,17 @@ def place_of_inset(reference, is_light, side):
 
 
 def nearest_snapshot(results, rows, seconds):
-    """(image, text) of the recorded pass nearest to the budget, of the lowest seed."""
+    """(image, text, file) of the recorded pass nearest to the budget, of the lowest seed."""
     of_seed = rows[(rows["seed"] == rows["seed"].min()) & (rows["component"] == "total")]
     run = of_seed["run"].iloc[0]
     record = records.read_run(results, run)
     times = of_seed.set_index("pass")["seconds"]
-    found = [(abs(math.log(times[snapshot["pass"]] / seconds)), snapshot) for snapshot in record["snapshots"]
-             if times.get(snapshot["pass"], 0) > 0]
-    if not found:
+    by_pass = {number: file for number, file in records.snapshot_files(results, run, record).items() if times.get(number, 0) > 0}
+    if not by_pass:
         return None
-    snapshot = min(found, key=lambda pair: pair[0])[1]
-    image = pictures.read_component(results / "runs" / run / snapshot["file"], "total")
-    return image, f"pass {snapshot['pass']}, {style.two_digits(times[snapshot['pass']])} s"
+    number = min(by_pass, key=lambda number: abs(math.log(times[number] / seconds)))
+    image = pictures.read_component(by_pass[number], "total")
+    return image, f"pass {number}, {style.two_digits(times[number])} s", by_pass[number]
 
 
 def insets_of(results, scene, reference, is_light):
@@ -171,23 +167,26 @@ def insets_of(results, scene, reference, is_light):
 def draw_scene(results, scene, rows, labels, table, seconds):
     """Pictures at the budget with insets; None without snapshots or a reference."""
     record = records.read_run(results, rows["run"].iloc[0])
-    reference = pictures.read_reference(records.reference_files(results, record), "total", False)
+    halves = records.reference_files(results, record)
+    reference = pictures.read_reference(halves, "total", False)
     shown = [(label, nearest_snapshot(results, rows[rows["method"] == label], seconds)) for label in labels]
     shown = [(label, found) for label, found in shown if found]
     if reference is None or not shown:
         return None
+    for _, (image, _, file) in shown:
+        pictures.require_same_size(file, image, halves[0], reference)
     errors = {(row["region"], row["method"]): row["rmse"] for row in table
               if row["component"] == "total" and row["seconds"] == seconds and "rmse" in row}
 
     def error_text(region, label):
         return f"RMSE {style.two_digits(errors[region, label])}" if (region, label) in errors else ""
 
-    emission = pictures.read_component(results / "runs" / rows["run"].iloc[0] / record["snapshots"][0]["file"], "emission")
+    emission = pictures.read_component(shown[0][1][2], "emission")
     is_light = numpy.zeros(reference.shape[:2], bool) if emission is None else emission.max(axis=2) > 0
     scale = pictures.exposure_for(reference * ~is_light[:, :, None])
     insets = insets_of(results, scene, reference, is_light)
     cells = [(label, image, f"{text}\nat {seconds:g} s: {error_text('image', label) or 'not resolved'}")
-             for label, (image, text) in shown] + [("reference", reference, "")]
+             for label, (image, text, _) in shown] + [("reference", reference, "")]
     style.use()
     style.pyplot.rcParams["axes.grid"] = False
     heights = [1.0, *((bottom - top) / (right - left) for left, top, right, bottom in insets.values())]
@@ -214,6 +213,7 @@ def draw_scene(results, scene, rows, labels, table, seconds):
     return figure
 
 
+@files.command
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
                                      formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -221,38 +221,30 @@ def main(arguments):
                                      ".pdf.\n\n" + __doc__.split("\n\n", 1)[1])
     parser.add_argument("results", metavar="RESULTS_DIR", type=Path, help="folder of an experiment's results")
     results = parser.parse_args(arguments).results
-    try:
-        recorded = records.read_records(results)
-        labels = records.methods_in_order(recorded)
-        split = read_split(results, recorded)
-        table = []
-        for scene, rows in recorded.groupby("scene", sort=False):
-            own = [label for label in labels if label in set(rows["method"])]
-            if rows["mse"].isna().all():
-                print(f"{scene}: no errors were recorded (was there a reference?), so no comparison")
-                continue
-            curves = curves_of(rows, None if split is None else split[split["scene"] == scene], own)
-            of_scene, seconds = table_of(scene, curves)
-            table += of_scene
-            if seconds is None:
-                print(f"{scene}: no time that all methods reach, so no pictures")
-                continue
-            figure = draw_scene(results, scene, rows, own, of_scene, seconds)
-            if figure is None:
-                print(f"{scene}: no snapshots, so no pictures")
-                continue
-            for file in style.save(figure, results, f"equal-time-{records.file_name(scene)}"):
-                print(file)
-        with open(results / "equal-time.csv", "w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(table)
-        print(results / "equal-time.csv")
-    except (records.RecordError, OSError) as error:
-        print(error, file=sys.stderr)
-        return 2
+    recorded = records.read_records(results)
+    labels = records.methods_in_order(recorded)
+    split = read_split(results, recorded)
+    table = []
+    for scene, rows in recorded.groupby("scene", sort=False):
+        own = [label for label in labels if label in set(rows["method"])]
+        if rows["mse"].isna().all():
+            print(f"{scene}: no errors were recorded (was there a reference?), so no comparison")
+            continue
+        curves = curves_of(rows, None if split is None else split[split["scene"] == scene], own)
+        of_scene, seconds = table_of(scene, curves)
+        table += of_scene
+        if seconds is None:
+            print(f"{scene}: no time that all methods reach, so no pictures")
+            continue
+        figure = draw_scene(results, scene, rows, own, of_scene, seconds)
+        if figure is None:
+            print(f"{scene}: no snapshots, so no pictures")
+            continue
+        for file in style.save(figure, results, f"equal-time-{records.file_name(scene)}"):
+            print(file)
+    print(tables.write_table(results / "equal-time.csv", COLUMNS, table))
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    files.run(main)

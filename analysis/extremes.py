@@ -14,17 +14,19 @@ Rays: the worst pixel's |x - 1|, without any noise. Update: the closed form of r
 """
 
 import argparse
-import csv
 import math
 import re
 import sys
 from pathlib import Path
 
 try:
+    import files
     import numpy
     import pictures
     import records
     import style
+    import tables
+    from files import InputError
     from matplotlib import lines
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas, matplotlib and OpenImageIO (on Debian: "
@@ -60,7 +62,7 @@ def axis_of(scene):
     found = re.fullmatch(r"([a-z]+)-(\d.*)", scene)
     value = records.as_number(found[2]) if found else None
     if value is None or found[1] not in {**PHOTON_AXES, **RAY_AXES}:
-        raise records.RecordError(f"scene {scene}: expected a variant of scenes/extremes, AXIS-VALUE")
+        raise InputError(f"scene {scene}: expected a variant of scenes/extremes, AXIS-VALUE")
     return found[1], value
 
 
@@ -69,8 +71,10 @@ def images(results):
     runs = records.read_records(results).drop_duplicates("run")
     found = {}
     for row in runs.sort_values("seed").itertuples():
-        snapshot = records.read_run(results, row.run)["snapshots"][-1]["file"]
-        image = pictures.read_component(Path(results) / "runs" / row.run / snapshot, "total")
+        by_pass = records.snapshot_files(results, row.run, records.read_run(results, row.run))
+        if not by_pass:
+            raise InputError(f"{Path(results) / 'runs' / row.run}: has no snapshot; run the experiment again")
+        image = pictures.read_component(by_pass[max(by_pass)], "total")
         method = row.branch_cutoff if row.integrator == "path" else row.integrator
         found.setdefault((row.scene, method), []).append(image)
     return found
@@ -82,10 +86,10 @@ def photon_errors(found):
     for (scene, method), of_seeds in found.items():
         axis, value = axis_of(scene)
         if axis not in PHOTON_AXES:
-            raise records.RecordError(f"scene {scene}: expected a scene of extremes.toml")
+            raise InputError(f"scene {scene}: expected a scene of extremes.toml")
         plain = found.get((PHOTON_AXES[axis][1], method))
         if plain is None or len(plain) != len(of_seeds):
-            raise records.RecordError(f"scene {scene}: expected {PHOTON_AXES[axis][1]} with the same seeds beside it")
+            raise InputError(f"scene {scene}: expected {PHOTON_AXES[axis][1]} with the same seeds beside it")
         light = value if axis == "light" else 1.0
         rows.append((axis, value, method, abs(numpy.mean(of_seeds) / (light * numpy.mean(plain)) - 1.0)))
     return rows
@@ -96,19 +100,19 @@ def ray_errors(found):
     for (scene, method), of_seeds in found.items():
         axis, value = axis_of(scene)
         if axis not in RAY_AXES:
-            raise records.RecordError(f"scene {scene}: expected a scene of extremes-rays.toml")
+            raise InputError(f"scene {scene}: expected a scene of extremes-rays.toml")
         rows.append((axis, value, method, float(numpy.max(numpy.abs(numpy.array(of_seeds) - 1.0)))))
     return rows
 
 
 def update_errors(file):
-    if not file.is_file():
-        raise records.RecordError(f"{file}: is not there; expected what build/release/tests/extremes/update_records prints")
-    table = records.read_table(file)
+    if not files.is_there(file):
+        raise InputError(f"{file}: is not there; expected what build/release/tests/extremes/update_records prints")
+    table = tables.read_table(file)
     expected = ["axis", "value", "update", "radius", "count", "estimate"]
     if list(table.columns) != expected:
-        raise records.RecordError(f"{file}: expected the columns {', '.join(expected)}")
-    numbers = {column: records.to_numbers(file, table[column], whole=False) for column in expected if column not in ["axis", "update"]}
+        raise InputError(f"{file}: expected the columns {', '.join(expected)}")
+    numbers = {column: tables.to_numbers(file, table[column]) for column in expected if column not in ["axis", "update"]}
     worst = numpy.maximum(numpy.maximum(numbers["radius"], numbers["count"]), numbers["estimate"])
     return list(zip(table["axis"], numbers["value"], table["update"], worst))
 
@@ -206,6 +210,7 @@ def set_scale(axes, low, high, linear):
     axes.xaxis.set_minor_locator(style.ticker.NullLocator())
 
 
+@files.command
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
                                      formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -214,22 +219,15 @@ def main(arguments):
     parser.add_argument("results", metavar="RESULTS", type=Path, help="of experiments/extremes.toml, with update.csv")
     parser.add_argument("rays", metavar="RESULTS_RAYS", type=Path, help="of experiments/extremes-rays.toml")
     chosen = parser.parse_args(arguments)
-    try:
-        found = images(chosen.results)
-        rows = sorted(photon_errors(found) + ray_errors(images(chosen.rays)) + update_errors(chosen.results / "update.csv"))
-        with open(chosen.results / "extremes.csv", "w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(COLUMNS)
-            writer.writerows((axis, f"{value:.8g}", method, f"{error:.3g}") for axis, value, method, error in rows)
-        print("\n".join(plain_answers(found) + statements(rows)))
-        print(chosen.results / "extremes.csv")
-        for file in style.save(draw(rows), chosen.results, "extremes"):
-            print(file)
-    except (records.RecordError, OSError) as error:
-        print(error, file=sys.stderr)
-        return 2
+    found = images(chosen.results)
+    rows = sorted(photon_errors(found) + ray_errors(images(chosen.rays)) + update_errors(chosen.results / "update.csv"))
+    table = [dict(zip(COLUMNS, (axis, f"{value:.8g}", method, f"{error:.3g}"))) for axis, value, method, error in rows]
+    print("\n".join(plain_answers(found) + statements(rows)))
+    print(tables.write_table(chosen.results / "extremes.csv", COLUMNS, table))
+    for file in style.save(draw(rows), chosen.results, "extremes"):
+        print(file)
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    files.run(main)

@@ -35,9 +35,12 @@ from pathlib import Path
 
 try:
     import decomposition
+    import files
     import numpy
     import pandas
     import records
+    import tables
+    from files import InputError
     from scipy import stats
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, scipy, pandas and OpenImageIO (on Debian: "
@@ -89,10 +92,10 @@ def recorded_radii(rows, last):
     of_total = rows[rows["component"] == "total"]
     radii = pandas.to_numeric(of_total["radius_mean"], errors="coerce")
     if radii.isna().any():
-        raise records.RecordError(f"run {of_total['run'][radii.isna()].iloc[0]}: expected radius_mean in every row of ppm")
+        raise InputError(f"run {of_total['run'][radii.isna()].iloc[0]}: expected radius_mean in every row of ppm")
     means = radii.groupby(of_total["pass"]).mean()
     if means.empty or means.index.max() < last:
-        raise records.RecordError(f"iterations.csv: expected radii of run {rows['run'].iloc[0]} up to pass {last}, which its sums have")
+        raise InputError(f"iterations.csv: expected radii of run {rows['run'].iloc[0]} up to pass {last}, which its sums have")
     number = numpy.arange(1, last + 1)
     return numpy.exp(2 * numpy.interp(numpy.log(number), numpy.log(means.index + 1.0), numpy.log(means))
                      - 2 * math.log(means.iloc[0]))
@@ -323,6 +326,7 @@ def best_alphas(family, component):
     return table
 
 
+@files.command
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
                                      formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -334,38 +338,35 @@ def main(arguments):
                         "the last, at least 4)")
     parser.add_argument("--to", dest="last", type=int, metavar="PASS", help="last pass of the window (default: the last)")
     options = parser.parse_args(arguments)
-    try:
-        recorded = records.read_records(options.results)
-        table, families = [], {}
-        for ensemble in decomposition.read_ensembles(options.results):
-            own = decomposition.rows_of(ensemble, recorded)
-            if own is None:
+    recorded = records.read_records(options.results)
+    table, families = [], {}
+    for ensemble in decomposition.read_ensembles(options.results):
+        own = decomposition.rows_of(ensemble, recorded)
+        if own is None:
+            continue
+        first = own.iloc[0]
+        first_pass, last_pass = default_window(ensemble.description["passes"])
+        window = (options.first or first_pass, options.last or last_pass)
+        # Emission has neither bias nor variance.
+        moments = {component: decomposition.moments_of(ensemble, options.results, component)
+                   for component in records.COMPONENTS if component != "emission"}
+        for component in moments:
+            if not moments[component]:
                 continue
-            first = own.iloc[0]
-            first_pass, last_pass = default_window(ensemble.description["passes"])
-            window = (options.first or first_pass, options.last or last_pass)
-            # Emission has neither bias nor variance.
-            moments = {component: decomposition.moments_of(ensemble, options.results, component)
-                       for component in records.COMPONENTS if component != "emission"}
-            for component in moments:
-                if not moments[component]:
-                    continue
-                table += fits_of(ensemble, own, moments, component, window)
-                if first["integrator"] == "ppm":
-                    rest = tuple(first[column] for column in ["scene", *FAMILY])
-                    families.setdefault((rest, component), {})[first["alpha"]] = (own, ensemble.seeds,
-                                                                                  moments[component])
-        decomposition.write_table(options.results / "fits.csv", FIT_COLUMNS, table)
-        best = [row for (_, component), family in families.items() if len(family) > 1
-                for row in best_alphas(family, component)]
-        (options.results / "best-alphas.csv").unlink(missing_ok=True)    # of earlier records
-        if best:
-            decomposition.write_table(options.results / "best-alphas.csv", BEST_COLUMNS, best)
-    except (records.RecordError, OSError) as error:
-        print(error, file=sys.stderr)
-        return 2
+            table += fits_of(ensemble, own, moments, component, window)
+            if first["integrator"] == "ppm":
+                rest = tuple(first[column] for column in ["scene", *FAMILY])
+                families.setdefault((rest, component), {})[first["alpha"]] = (own, ensemble.seeds,
+                                                                              moments[component])
+    print(tables.write_table(options.results / "fits.csv", FIT_COLUMNS, table))
+    best = [row for (_, component), family in families.items() if len(family) > 1
+            for row in best_alphas(family, component)]
+    if best:
+        print(tables.write_table(options.results / "best-alphas.csv", BEST_COLUMNS, best))
+    else:
+        files.remove_file(options.results / "best-alphas.csv")    # of earlier records
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    files.run(main)

@@ -10,9 +10,11 @@ import sys
 from pathlib import Path
 
 try:
+    import files
     import pictures
     import records
     import style
+    from files import InputError
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas, matplotlib and OpenImageIO (on "
           "Debian: /usr/bin/python3 with python3-pandas, python3-matplotlib and python3-openimageio)", file=sys.stderr)
@@ -57,22 +59,21 @@ def collect(results, scene, rows, labels):
         run = of_run["run"].iloc[0]
         record = records.read_run(results, run)
         total = of_run[of_run["component"] == "total"]
-        images = {}
-        for snapshot in record["snapshots"]:
-            file = results / "runs" / run / snapshot["file"]
-            of_pass = total[total["pass"] == snapshot["pass"]]
-            if file.is_file() and not of_pass.empty:
-                images[snapshot["pass"]] = (pictures.read_component(file, "total"), caption(of_pass))
+        images, by_pass = {}, records.snapshot_files(results, run, record)
+        for number, file in by_pass.items():
+            of_pass = total[total["pass"] == number]
+            if not of_pass.empty:
+                images[number] = (pictures.read_component(file, "total"), caption(of_pass))
         if images:
             found.append((label, images))
         else:
             print(f"{scene}: {label}: no snapshots, so not in the gallery")
-        if reference is None:
-            files = records.reference_files(results, record)
-            reference = pictures.read_reference(files, "total", False)
+        if reference is None and images:
+            halves, (snapshot, *_) = records.reference_files(results, record), by_pass.values()
+            reference = pictures.read_reference(halves, "total", False)
             if reference is not None:
-                exposure = pictures.exposure_for(lit_by_scene(reference, results / "runs" / run /
-                                                              record["snapshots"][0]["file"]))
+                pictures.require_same_size(snapshot, next(iter(images.values()))[0], halves[0], reference)
+                exposure = pictures.exposure_for(lit_by_scene(reference, snapshot))
     if found and exposure is None:
         exposure = pictures.exposure_for(list(found[0][1].values())[-1][0])
     return found, reference, exposure
@@ -118,6 +119,7 @@ def draw(scenes, given_exposure):
     return figure
 
 
+@files.command
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
                                      formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -128,23 +130,19 @@ def main(arguments):
     parser.add_argument("--exposure", type=style.positive, metavar="E",
                         help="factor on radiance (default: for each scene, 97%% of what its lights light is below white)")
     options = parser.parse_args(arguments)
-    try:
-        rows = records.read_records(options.results)
-        labels = records.methods_in_order(rows)
-        scenes = []
-        for scene, scene_rows in rows.groupby("scene", sort=False):
-            methods, reference, exposure = collect(options.results, scene, scene_rows, labels)
-            if methods:
-                scenes.append((scene, methods, reference, exposure))
-        if not scenes:
-            raise records.RecordError(f"{options.results}: no snapshots; expected some in the experiment file")
-        for file in style.save(draw(scenes, options.exposure), options.results, "gallery"):
-            print(file)
-    except (records.RecordError, OSError) as error:
-        print(error, file=sys.stderr)
-        return 2
+    rows = records.read_records(options.results)
+    labels = records.methods_in_order(rows)
+    scenes = []
+    for scene, scene_rows in rows.groupby("scene", sort=False):
+        methods, reference, exposure = collect(options.results, scene, scene_rows, labels)
+        if methods:
+            scenes.append((scene, methods, reference, exposure))
+    if not scenes:
+        raise InputError(f"{options.results}: no snapshots; expected some in the experiment file")
+    for file in style.save(draw(scenes, options.exposure), options.results, "gallery"):
+        print(file)
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    files.run(main)

@@ -10,10 +10,12 @@ import sys
 from pathlib import Path
 
 try:
+    import files
     import numpy
     import pictures
     import records
     import style
+    from files import InputError
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas, matplotlib and OpenImageIO (on "
           "Debian: /usr/bin/python3 with python3-pandas, python3-matplotlib and python3-openimageio)", file=sys.stderr)
@@ -27,7 +29,7 @@ def swept_settings(rows):
     counts = {column: rows[column].nunique() for column in records.SETTINGS if rows[column].nunique() > 1}
     counts.pop("radius_rule", None)
     if len(counts) != 2:
-        raise records.RecordError(f"expected a sweep over two settings, found {', '.join(counts) or 'none'}")
+        raise InputError(f"expected a sweep over two settings, found {', '.join(counts) or 'none'}")
     return sorted(counts, key=counts.get, reverse=True)
 
 
@@ -78,12 +80,12 @@ def final_difference(results, rows):
     of_seed = rows[rows["seed"] == rows["seed"].min()]
     run = of_seed["run"].iloc[0]
     record = records.read_run(results, run)
-    files = records.reference_files(results, record)
-    if not record["snapshots"] or not files:
+    by_pass, halves = records.snapshot_files(results, run, record), records.reference_files(results, record)
+    if not by_pass or not halves:
         return None
-    last = max(record["snapshots"], key=lambda snapshot: snapshot["pass"])
-    reference = pictures.read_reference(files, "total", False)
-    return (pictures.read_component(results / "runs" / run / last["file"], "total") - reference).mean(axis=2)
+    image, reference = pictures.read_component(by_pass[max(by_pass)], "total"), pictures.read_reference(halves, "total", False)
+    pictures.require_same_size(by_pass[max(by_pass)], image, halves[0], reference)
+    return (image - reference).mean(axis=2)
 
 
 def draw_differences(scene, results, rows, across, down):
@@ -117,6 +119,7 @@ def draw_differences(scene, results, rows, across, down):
     return figure
 
 
+@files.command
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
                                      formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -124,25 +127,21 @@ def main(arguments):
                                      "\n\n" + __doc__.split("\n\n", 1)[1])
     parser.add_argument("results", metavar="RESULTS_DIR", type=Path, help="folder of an experiment's results")
     results = parser.parse_args(arguments).results
-    try:
-        recorded = records.read_records(results)
-        for scene, rows in recorded.groupby("scene", sort=False):
-            if rows["mse"].isna().all():
-                print(f"{scene}: no errors were recorded (was there a reference?), so no grid")
+    recorded = records.read_records(results)
+    for scene, rows in recorded.groupby("scene", sort=False):
+        if rows["mse"].isna().all():
+            print(f"{scene}: no errors were recorded (was there a reference?), so no grid")
+            continue
+        down, across = swept_settings(rows)
+        for name, figure in [("grid", draw_heat_map(scene, rows, across, down)),
+                             ("differences", draw_differences(scene, results, rows, across, down))]:
+            if figure is None:
+                print(f"{scene}: no snapshots, so no differences")
                 continue
-            down, across = swept_settings(rows)
-            for name, figure in [("grid", draw_heat_map(scene, rows, across, down)),
-                                 ("differences", draw_differences(scene, results, rows, across, down))]:
-                if figure is None:
-                    print(f"{scene}: no snapshots, so no differences")
-                    continue
-                for file in style.save(figure, results, f"{name}-{records.file_name(scene)}"):
-                    print(file)
-    except (records.RecordError, OSError) as error:
-        print(error, file=sys.stderr)
-        return 2
+            for file in style.save(figure, results, f"{name}-{records.file_name(scene)}"):
+                print(file)
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    files.run(main)

@@ -9,8 +9,10 @@ import sys
 from pathlib import Path
 
 try:
+    import files
     import records
     import style
+    import tables
     from matplotlib import lines
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas and matplotlib (on Debian: "
@@ -73,6 +75,7 @@ def draw_scene(rows, labels):
     return figure
 
 
+@files.command
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
                                      formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -80,23 +83,19 @@ def main(arguments):
                                      __doc__.split("\n\n", 1)[1])
     parser.add_argument("results", metavar="RESULTS_DIR", type=Path, help="folder of an experiment's results")
     results = parser.parse_args(arguments).results
-    try:
-        recorded = records.read_records(results)
-        for column in MEASURED:
-            recorded[column] = records.to_numbers(results / "iterations.csv", recorded[column], whole=False)
-        labels = records.methods_in_order(recorded)
-        for scene, rows in recorded.groupby("scene", sort=False):
-            figure = draw_scene(rows, [label for label in labels if label in set(rows["method"])])
-            if figure is None:
-                print(f"{scene}: no method emits photons, so there is nothing to draw")
-                continue
-            for file in style.save(figure, results, f"memory-{records.file_name(scene)}"):
-                print(file)
-    except (records.RecordError, OSError) as error:
-        print(error, file=sys.stderr)
-        return 2
+    recorded = records.read_records(results)
+    for column in MEASURED:
+        recorded[column] = tables.to_numbers(results / "iterations.csv", recorded[column])
+    labels = records.methods_in_order(recorded)
+    for scene, rows in recorded.groupby("scene", sort=False):
+        figure = draw_scene(rows, [label for label in labels if label in set(rows["method"])])
+        if figure is None:
+            print(f"{scene}: no method emits photons, so there is nothing to draw")
+            continue
+        for file in style.save(figure, results, f"memory-{records.file_name(scene)}"):
+            print(file)
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    files.run(main)

@@ -4,24 +4,55 @@ OpenImageIO reads them: Debian has it for Python (python3-openimageio), and a re
 any of OpenEXR's compressions.
 """
 
+import os
+
+import files
 import numpy
 import OpenImageIO
+from files import InputError
 
-from records import RecordError
+
+def read_image(file):
+    """(OpenImageIO's description, pixels in the file's own type: asked for floats, OpenImageIO would scale integers to [0, 1])."""
+    with files.opened(file) as stream:
+        if os.fstat(stream.fileno()).st_size == 0:
+            raise InputError(f"{file}: cannot be read as an image: it is empty")
+        name = descriptor_name(stream.fileno())    # of what was opened, whatever the file is called
+        image = OpenImageIO.ImageInput.open(name)
+        if image is None:
+            said = OpenImageIO.geterror().replace(name, str(file))
+            raise InputError(f"{file}: cannot be read as an image: {said}")
+        spec = image.spec()
+        pixels = image.read_image(spec.format)
+        error = image.geterror()
+        image.close()
+        if pixels is None or error:
+            raise InputError(f"{file}: its pixels cannot be read: {error.replace(name, str(file))}")
+        return spec, pixels
+
+
+def write_exr(file, channels, pixels):
+    """Replaces the file by an OpenEXR image of floats: pixels (height, width, channels) with the channels' names."""
+    spec = OpenImageIO.ImageSpec(pixels.shape[1], pixels.shape[0], len(channels), "float")
+    spec.channelnames = channels
+    with open(os.memfd_create("exr"), "rb") as memory:    # OpenImageIO wants a name to write to
+        name = descriptor_name(memory.fileno())
+        output = OpenImageIO.ImageOutput.create("exr")
+        if output is None or not (output.open(name, spec) and output.write_image(pixels.astype(numpy.float32)) and
+                                  output.close()):
+            said = output.geterror() if output else OpenImageIO.geterror()
+            raise InputError(f"{file}: cannot be written: {said.replace(name, str(file))}")
+        return files.replace_file(file, memory.read())
+
+
+def descriptor_name(descriptor):
+    """A name by which what is open can be opened again."""
+    return f"/proc/self/fd/{descriptor}"
 
 
 def read_channels(file, names):
     """The named channels of an EXR as an array (height, width, channels) of doubles; None when it lacks one."""
-    image = OpenImageIO.ImageInput.open(str(file))
-    if image is None:
-        raise RecordError(f"{file}: cannot be read as an image: {OpenImageIO.geterror()}")
-    spec = image.spec()
-    # In the file's own type: asked for floats, OpenImageIO would scale integers to [0, 1].
-    pixels = image.read_image(spec.format)
-    error = image.geterror()
-    image.close()
-    if pixels is None or error:
-        raise RecordError(f"{file}: its pixels cannot be read: {error}")
+    spec, pixels = read_image(file)
     if not set(names) <= set(spec.channelnames):
         return None
     return pixels[:, :, [spec.channelnames.index(name) for name in names]].astype(numpy.float64)
@@ -33,7 +64,7 @@ def read_component(file, component, photons_carry_direct=False):
     if component == "total":
         colour = read_channels(file, ["R", "G", "B"])
         if colour is None:
-            raise RecordError(f"{file}: has no channels R, G, B")
+            raise InputError(f"{file}: has no channels R, G, B")
         return colour
     layers = [component]
     if photons_carry_direct and component == "gathered":
@@ -42,22 +73,27 @@ def read_component(file, component, photons_carry_direct=False):
     return None if any(colour is None for colour in colours) else sum(colours)
 
 
-def read_layers(files):
+def read_layers(halves_of):
     """{"picture": radiance, and "emission", "direct", "gathered" where all files have all three} of a snapshot or, as the mean
     of its halves, of a reference."""
-    layers = {"picture": read_reference(files, "total", False)}
-    parts = {layer: read_reference(files, layer, False) for layer in ["emission", "direct", "gathered"]}
+    layers = {"picture": read_reference(halves_of, "total", False)}
+    parts = {layer: read_reference(halves_of, layer, False) for layer in ["emission", "direct", "gathered"]}
     return layers if any(part is None for part in parts.values()) else {**layers, **parts}
 
 
-def read_reference(files, component, photons_carry_direct):
-    """The mean of a reference's halves, or the single image; None when there is none or it lacks the component."""
-    halves = [read_component(file, component, photons_carry_direct) for file in files]
+def read_reference(halves_of, component, photons_carry_direct):
+    """The mean of a reference's halves, which are these files, or the single image; None when there is none or it lacks the
+    component."""
+    halves = [read_component(file, component, photons_carry_direct) for file in halves_of]
     if not halves or any(half is None for half in halves):
         return None
-    if len({half.shape for half in halves}) > 1:
-        raise RecordError(f"{files[0]}: differs in size from {files[1]}")
+    require_same_size(halves_of[0], halves[0], halves_of[-1], halves[-1])
     return sum(halves) / len(halves)
+
+
+def require_same_size(file, image, other_file, other):
+    if image.shape[:2] != other.shape[:2]:
+        raise InputError(f"{file}: differs in size from {other_file}")
 
 
 def exposure_for(colour):

@@ -11,9 +11,11 @@ import sys
 from pathlib import Path
 
 try:
-    import pandas
+    import files
     import records
     import style
+    import tables
+    from files import InputError
     from matplotlib import lines
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas and matplotlib (on Debian: "
@@ -22,6 +24,7 @@ except ImportError as error:
 
 COLUMNS = ["schema", "experiment", "run", "scene", "seed", "probe", "x", "y", "pass", "radius", "photons", "density",
            "radiance_r", "radiance_g", "radiance_b"]
+NUMBERS = ["seed", *COLUMNS[COLUMNS.index("x"):]]
 QUANTITIES = {"radius": "radius (scene units)", "photons": "photons", "density": "photons a unit of area",
               "radiance": "radiance"}
 
@@ -29,18 +32,15 @@ QUANTITIES = {"radius": "radius (scene units)", "photons": "photons", "density":
 def read_probes(results, labels_by_run):
     """Rows of RESULTS/probes.csv as numbers, with `method` and `radiance`, the mean of its channels."""
     file = Path(results) / "probes.csv"
-    if not file.is_file():
-        raise records.RecordError(f"{file}: is not there; expected an experiment with probes")
-    rows = records.read_table(file)
-    missing = [column for column in COLUMNS if column not in rows.columns]
-    if missing:
-        raise records.RecordError(f"{file}: lacks the columns {', '.join(missing)}; expected those of schema "
-                                  f"{records.SCHEMA}")
-    for column in COLUMNS[6:]:
-        rows[column] = records.to_numbers(file, rows[column], whole=False)
+    if not files.is_there(file):
+        raise InputError(f"{file}: is not there; expected an experiment with probes")
+    rows = tables.read_table(file)
+    tables.require_columns(file, rows, COLUMNS, f"expected those of schema {records.SCHEMA}")
+    for column in NUMBERS:
+        rows[column] = tables.to_numbers(file, rows[column])
     unknown = ~rows["run"].isin(labels_by_run)
     if unknown.any():
-        raise records.RecordError(f"{records.place(file, unknown)}: run {rows['run'][unknown].iloc[0]} is not in "
+        raise InputError(f"{tables.place(file, unknown)}: run {rows['run'][unknown].iloc[0]} is not in "
                                   "iterations.csv")
     rows["method"] = rows["run"].map(labels_by_run)
     rows["radiance"] = rows[["radiance_r", "radiance_g", "radiance_b"]].mean(axis=1, skipna=False)
@@ -54,7 +54,7 @@ def draw_scene(rows, labels, styles):
     handles = [lines.Line2D([], [], label=label, **styles[label]) for label in labels if label in set(rows["method"])]
     figure, grid = style.panels_over_legend(
         len(QUANTITIES), len(names), handles,
-        f"Seed {rows['seed'].iloc[0]}. " + "; ".join(
+        f"Seed {rows['seed'].iloc[0]:.0f}. " + "; ".join(
             f"{name}: pixel ({group['x'].iloc[0]:.0f}, {group['y'].iloc[0]:.0f})"
             for name, group in rows.groupby("probe", sort=False)) + ". Radiance is the mean of its three channels.",
         panel_height=1.2)
@@ -80,6 +80,7 @@ def draw_scene(rows, labels, styles):
     return figure
 
 
+@files.command
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
                                      formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -87,22 +88,18 @@ def main(arguments):
                                      __doc__.split("\n\n", 1)[1])
     parser.add_argument("results", metavar="RESULTS_DIR", type=Path, help="folder of an experiment's results")
     results = parser.parse_args(arguments).results
-    try:
-        recorded = records.read_records(results)
-        labels = records.methods_in_order(recorded)
-        first_rows = recorded.drop_duplicates("run").set_index("run")
-        rows = read_probes(results, first_rows["method"].to_dict())
-        for scene, scene_rows in rows.groupby("scene", sort=False):
-            of_seed = scene_rows[scene_rows["seed"] == scene_rows["seed"].min()]
-            styles = style.method_styles(recorded, labels)
-            figure = draw_scene(of_seed, labels, styles)
-            for file in style.save(figure, results, f"probes-{records.file_name(scene)}"):
-                print(file)
-    except (records.RecordError, OSError) as error:
-        print(error, file=sys.stderr)
-        return 2
+    recorded = records.read_records(results)
+    labels = records.methods_in_order(recorded)
+    first_rows = recorded.drop_duplicates("run").set_index("run")
+    rows = read_probes(results, first_rows["method"].to_dict())
+    for scene, scene_rows in rows.groupby("scene", sort=False):
+        of_seed = scene_rows[scene_rows["seed"] == scene_rows["seed"].min()]
+        styles = style.method_styles(recorded, labels)
+        figure = draw_scene(of_seed, labels, styles)
+        for file in style.save(figure, results, f"probes-{records.file_name(scene)}"):
+            print(file)
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    files.run(main)

@@ -4,16 +4,15 @@ A method is a set of settings (integrator, alpha, radius, ...); runs that differ
 repetitions of one method. Passes of one run are cumulative, so a method's spread is taken over its seeds, never over
 the passes of a run. Errors are combined as mean squared errors and rooted last: the root of a mean is what theory
 predicts, and an unbiased MSE may be negative, where no root exists but a mean does.
-
-What is wrong with a file is a RecordError, which names the file and what was expected.
 """
 
-import csv
-import json
 import math
 from pathlib import Path
 
+import files
 import pandas
+from files import InputError
+from tables import place, read_table, require_columns, to_numbers
 
 SCHEMA = "1"
 COMPONENTS = ["total", "emission", "direct", "gathered"]
@@ -45,90 +44,51 @@ MODE_ORDER = ["radius", "nearest"]
 BARE_SETTINGS = ["integrator", "mode", "schedule", "kernel"]    # their values say what they are
 
 
-class RecordError(Exception):
-    """Records that cannot be used. The message names the file and says what was expected."""
-
-
 def read_records(results):
     """Rows of RESULTS/iterations.csv: settings as the text they were written in, counts and measurements as numbers
     (NaN where the file has nothing), and the column `method` with the label of the row's method."""
     file = Path(results) / "iterations.csv"
-    if not Path(results).is_dir():
-        raise RecordError(f"{results}: is not a folder; expected the results of `photonlab run`")
-    if not file.is_file():
-        raise RecordError(f"{file}: is not there; expected the records of `photonlab run`")
+    if not files.is_there(results) or not Path(results).is_dir():
+        raise InputError(f"{results}: is not a folder; expected the results of `photonlab run`")
+    if not files.is_there(file):
+        raise InputError(f"{file}: is not there; expected the records of `photonlab run`")
     records = read_table(file)
     check(file, records)
     for column in COUNTS + NUMBERS:
         records[column] = to_numbers(file, records[column], whole=column in COUNTS)
     if (records["pass"].isna() | records["seed"].isna()).any():
-        raise RecordError(f"{file}: has rows without pass or seed")
+        raise InputError(f"{file}: has rows without pass or seed")
     check_settings(file, records)
     refuse_repeated_rows(file, records)
     records["method"] = method_labels(records)
     return records
 
 
-def read_table(file):
-    """The CSV as text. pandas would fill up a row that was cut, so the fields are counted here."""
-    with open(file, newline="", encoding="utf-8") as stream:
-        reader = csv.reader(stream, strict=True)
-        try:
-            header = next(reader, [])
-            rows = []
-            for row in reader:
-                if len(row) != len(header):
-                    raise RecordError(f"{file}:{reader.line_num}: has {len(row)} fields; the header has {len(header)}")
-                rows.append(row)
-        except (csv.Error, UnicodeDecodeError) as error:
-            raise RecordError(f"{file}: is not a table in CSV: {error}") from error
-    return pandas.DataFrame(rows, columns=header, dtype=str)
-
-
 def check(file, records):
-    """Throws RecordError unless the columns, the schema and the components are those of the contract."""
-    missing = [column for column in COLUMNS if column not in records.columns]
-    if missing:
-        raise RecordError(f"{file}: lacks the columns {', '.join(missing)}; expected those of schema {SCHEMA}")
+    """Throws InputError unless the columns, the schema and the components are those of the contract."""
+    require_columns(file, records, COLUMNS, f"expected those of schema {SCHEMA}")
     if records.empty:
-        raise RecordError(f"{file}: has no rows; has a run finished?")
+        raise InputError(f"{file}: has no rows; has a run finished?")
     for column, known in [("schema", [SCHEMA]), ("component", COMPONENTS)]:
         unknown = ~records[column].isin(known)
         if unknown.any():
-            raise RecordError(f"{place(file, unknown)}: unknown {column} \"{records[column][unknown].iloc[0]}\"; "
+            raise InputError(f"{place(file, unknown)}: unknown {column} \"{records[column][unknown].iloc[0]}\"; "
                               f"known here: {', '.join(known)}")
 
 
-def place(file, wrong):
-    """file:line of the first row that is wrong; the header is line 1."""
-    return f"{file}:{wrong.to_numpy().argmax() + 2}"
-
-
-def to_numbers(file, texts, whole):
-    """The column as numbers; NaN where it is empty."""
-    numbers = pandas.to_numeric(texts, errors="coerce")
-    wrong = numbers.isna() & ~texts.str.lower().isin(["", "nan", "-nan"])
-    if whole:
-        wrong |= numbers.notna() & ((numbers < 0) | (numbers % 1 != 0))
-    if wrong.any():
-        expected = "a whole number that is not negative" if whole else "a number"
-        raise RecordError(f"{place(file, wrong)}: {texts.name} is \"{texts[wrong].iloc[0]}\"; expected {expected}")
-    return numbers.astype(float)
-
-
 def check_settings(file, records):
-    """Throws RecordError where a run changes its settings, or has an alpha, paths or a radius that it cannot have."""
+    """Throws InputError where a run changes its settings, or has an alpha, paths or a radius that it cannot have."""
     changing = (records.groupby("run")[SETTINGS].nunique() > 1).any(axis=1)
     if changing.any():
-        raise RecordError(f"{file}: run {changing.index[changing.to_numpy().argmax()]} has rows with different settings")
-    alpha = to_numbers(file, records["alpha"], whole=False)
+        raise InputError(f"{file}: run {changing.index[changing.to_numpy().argmax()]} has rows with different settings")
+    alpha = to_numbers(file, records["alpha"])
     wrong = (alpha <= 0) | (alpha > 1) | ((records["integrator"] == "ppm") & alpha.isna())
     if wrong.any():
-        raise RecordError(f"{place(file, wrong)}: alpha is \"{records['alpha'][wrong].iloc[0]}\"; expected a number in (0, 1]")
+        raise InputError(f"{place(file, wrong)}: alpha is \"{records['alpha'][wrong].iloc[0]}\"; expected a number in (0, 1]")
     to_numbers(file, records["paths_emitted"], whole=True)
-    wrong = to_numbers(file, records["radius_mean"], whole=False) <= 0
+    wrong = to_numbers(file, records["radius_mean"]) <= 0
     if wrong.any():
-        raise RecordError(f"{place(file, wrong)}: radius_mean is \"{records['radius_mean'][wrong].iloc[0]}\"; expected a number "
+        raise InputError(f"{place(file, wrong)}: radius_mean is \"{records['radius_mean'][wrong].iloc[0]}\"; expected a number "
                           "above 0")
 
 
@@ -144,7 +104,7 @@ def refuse_repeated_rows(file, records):
     repeated = records.duplicated(["scene", *settings_of(records), "seed", "pass", "component"])
     if repeated.any():
         row = records[repeated].iloc[0]
-        raise RecordError(f"{place(file, repeated)}: run {row['run']} repeats pass {row['pass']:.0f}, "
+        raise InputError(f"{place(file, repeated)}: run {row['run']} repeats pass {row['pass']:.0f}, "
                           f"{row['component']}, of an earlier row with the same settings and seed")
 
 
@@ -260,21 +220,24 @@ def root(mean_squared_error):
 def read_run(results, run):
     """run.json of a run, with what figures need checked."""
     file = Path(results) / "runs" / run / "run.json"
-    try:
-        record = json.loads(file.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise RecordError(f"{file}: cannot be read: {error.strerror}") from error
-    except ValueError as error:
-        raise RecordError(f"{file}: is not JSON: {error}") from error
+    record = files.read_json(file)
     snapshots = record.get("snapshots") if isinstance(record, dict) else None
     if not isinstance(snapshots, list) or not all(
             isinstance(snapshot, dict) and isinstance(snapshot.get("pass"), int) and
             isinstance(snapshot.get("file"), str) for snapshot in snapshots):
-        raise RecordError(f"{file}: expected \"snapshots\", a list of objects with \"pass\" and \"file\"")
+        raise InputError(f"{file}: expected \"snapshots\", a list of objects with \"pass\" and \"file\"")
     reference = record.get("reference")
     if reference is not None and not isinstance(reference.get("path") if isinstance(reference, dict) else None, str):
-        raise RecordError(f"{file}: expected \"reference\" to be null or an object with \"path\"")
+        raise InputError(f"{file}: expected \"reference\" to be null or an object with \"path\"")
+    if not isinstance(record.get("working_directory", ""), str):
+        raise InputError(f"{file}: expected \"working_directory\" to be a path")
     return record
+
+
+def snapshot_files(results, run, record):
+    """{pass: file} of the snapshots that a run kept and that are still there."""
+    found = {snapshot["pass"]: Path(results) / "runs" / run / snapshot["file"] for snapshot in record["snapshots"]}
+    return {number: file for number, file in found.items() if files.is_there(file)}
 
 
 def reference_files(results, record):
@@ -286,11 +249,11 @@ def reference_files(results, record):
     path = record["reference"]["path"]
     for start in [record.get("working_directory") or ".", ".", results]:
         found = Path(start) / path
-        if found.is_file():
-            return [found]
         halves = [found / "half_a.exr", found / "half_b.exr"]
-        if all(half.is_file() for half in halves):
+        if all(files.is_there(half) for half in halves):
             return halves
+        if files.is_there(found) and not found.is_dir():
+            return [found]
     return []
 
 

@@ -23,6 +23,7 @@ from html import escape
 from pathlib import Path
 
 try:
+    import files
     import gallery
     import numpy
     import pandas
@@ -30,6 +31,7 @@ try:
     import records
     import strip
     import style
+    import tables
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas, matplotlib and OpenImageIO (on "
           "Debian: /usr/bin/python3 with python3-pandas, python3-matplotlib and python3-openimageio)", file=sys.stderr)
@@ -105,7 +107,7 @@ def read_runs(results, rows, missing):
     """run.json by run, for the runs of the records that have one."""
     runs, without = {}, []
     for run in rows["run"].unique():
-        if (results / "runs" / run / "run.json").is_file():
+        if files.is_there(results / "runs" / run / "run.json"):
             runs[run] = records.read_run(results, run)
         else:
             without.append(run)
@@ -171,10 +173,10 @@ def result_tables(scene, rows, labels):
 def derived_table(file, title, recorded):
     """A CSV that another tool of the analysis wrote. Settings are named by the method that `recorded` gives them, and
     what is the same in all rows is said once, above."""
-    rows = records.read_table(file)
+    rows = tables.read_table(file)
     notes = []
     if file.name == "decomposition.csv" and "pass" in rows.columns and not rows.empty:
-        passes = records.to_numbers(file, rows["pass"], whole=True)
+        passes = tables.to_numbers(file, rows["pass"], whole=True)
         owner = [rows[column] for column in ["scene", "point"] if column in rows.columns]
         last = passes.groupby(owner).transform("max") if owner else passes.max()
         rows = rows[passes == last]
@@ -217,22 +219,21 @@ def snapshots(results, rows, labels, runs, missing, name, seeds):
         own = []    # [(seed, its rows, files by pass)]
         for seed, of_run in sorted(of_method.groupby("seed"), key=lambda pair: pair[0]):
             run = of_run["run"].iloc[0]
-            files = {snapshot["pass"]: results / "runs" / run / snapshot["file"]
-                     for snapshot in (runs[run]["snapshots"] if run in runs else [])}
-            files = {number: file for number, file in files.items() if file.is_file()}
-            if files:
-                own.append((int(seed), of_run, files))
+            by_pass = records.snapshot_files(results, run, runs[run]) if run in runs else {}
+            if by_pass:
+                own.append((int(seed), of_run, by_pass))
         if not own and any(run in runs for run in of_method["run"]):
             missing.append(f"{name}: no snapshots of {label} (seed {of_method['seed'].min():.0f}).")
         if len(own) > seeds:
             missing.append(f"{name}: images of {seeds} of the {len(own)} seeds of {label}; --seeds gives more.")
-        for number in dict.fromkeys(number for *_, files in own[:seeds] for number in files):
-            for seed, of_run, files in own[:seeds]:
-                if number in files:
+        for number in dict.fromkeys(number for *_, by_pass in own[:seeds] for number in by_pass):
+            for seed, of_run, by_pass in own[:seeds]:
+                if number in by_pass:
                     of_pass = of_run[of_run["pass"] == number]
                     captions = {component: gallery.caption(of_component)
                                 for component, of_component in of_pass.groupby("component") if component != "emission"}
-                    shown.append((label, number, seed, pictures.read_layers([files[number]]), captions, files[number]))
+                    shown.append((label, number, seed, pictures.read_layers([by_pass[number]]), captions,
+                                  by_pass[number]))
     return shown
 
 
@@ -242,8 +243,8 @@ def references(results, rows, runs, missing, name):
     for run in rows["run"].unique():
         path = found(runs.get(run, {}), "reference", "path")
         if path and path not in read:
-            files = records.reference_files(results, runs[run])
-            read[path] = (pictures.read_layers(files), files[0]) if files else None
+            halves = records.reference_files(results, runs[run])
+            read[path] = (pictures.read_layers(halves), halves[0]) if halves else None
     missing += [f"{name}: the reference is not found at {path}." for path, image in read.items() if image is None]
     if not read and any(run in runs for run in rows["run"]):
         missing.append(f"{name}: no reference, so no errors.")
@@ -271,8 +272,7 @@ def viewer_scene(results, name, rows, labels, runs, missing, seeds):
         return None
     *_, first, _, first_file = images[0]
     for *_, layers, _, file in images:
-        if layers["picture"].shape != first["picture"].shape:
-            raise records.RecordError(f"{file}: differs in size from {first_file}")
+        pictures.require_same_size(file, layers["picture"], first_file, first["picture"])
     exposure = pictures.exposure_for(gallery.lit_by_scene(images[-1][3]["picture"], first_file))
     scale = 2.0 ** round(math.log2(exposure))
     places, listed = {}, {}    # of encoded pixels; of images by name
@@ -384,13 +384,13 @@ def scene_table(rows, runs):
 
 
 def figures(results, missing):
-    files = sorted((results / "figures").glob("*.png"))
-    if not files:
+    drawn = sorted((results / "figures").glob("*.png"))
+    if not drawn:
         missing.append("No figures: RESULTS/figures has no PNG. The other tools of analysis/ draw them.")
         return ""
     shown = "\n".join(f'<figure><img alt="{escape(file.name)}" src="data:image/png;base64,'
-                      f'{base64.b64encode(file.read_bytes()).decode()}"><figcaption>{escape(file.name)}</figcaption>'
-                      "</figure>" for file in files)
+                      f'{base64.b64encode(files.read_bytes(file)).decode()}"><figcaption>{escape(file.name)}</figcaption>'
+                      "</figure>" for file in drawn)
     return f'<section id="figures"><h2>Figures</h2>{shown}</section>'
 
 
@@ -421,16 +421,16 @@ def page(results, seeds):
     """The whole page as text, with images of up to `seeds` seeds a method."""
     rows = records.read_records(results)
     for column in COUNTERS + MEMORY:
-        rows[column] = records.to_numbers(results / "iterations.csv", rows[column], whole=False)
+        rows[column] = tables.to_numbers(results / "iterations.csv", rows[column])
     labels = records.methods_in_order(rows)
     missing = []
     runs = read_runs(results, rows, missing)
     scenes = viewer_scenes(results, rows, labels, runs, missing, seeds)
     figure_section = figures(results, missing)
-    tables = "".join(result_tables(scene, of_scene, [label for label in labels if label in set(of_scene["method"])])
-                     for scene, of_scene in rows.groupby("scene", sort=False))
+    of_scenes = "".join(result_tables(scene, of_scene, [label for label in labels if label in set(of_scene["method"])])
+                        for scene, of_scene in rows.groupby("scene", sort=False))
     derived = "".join(derived_table(results / name, title, rows) for name, title in DERIVED_TABLES.items()
-                      if (results / name).is_file())
+                      if files.is_there(results / name))
     experiments = ", ".join(distinct(rows["experiment"]))
     title = " / ".join(distinct(found(record, "title") for record in runs.values())) or experiments
     colours = style.pyplot.get_cmap(strip.DIFFERENCE_COLOURS)(numpy.linspace(0, 1, 255), bytes=True)[:, :3].tolist()
@@ -462,7 +462,7 @@ def page(results, seeds):
 <section id="errors">
 <h2>Errors and costs</h2>
 {scene_table(rows, runs)}
-{tables}
+{of_scenes}
 <p class="small">RMSE: root of the mean over seeds of the squared error, free of the reference's noise (iterations.csv,
 <code>mse_unbiased</code>); “below resolution” where that mean is not above 0, less than the reference can tell.
 Seconds and photons: means over seeds; memory: the largest. A click on a column's name sorts by it.</p>
@@ -487,6 +487,7 @@ def whole_positive(text):
     return value
 
 
+@files.command
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
                                      formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -497,16 +498,10 @@ def main(arguments):
                         "has images of, of those with snapshots (default: 2); the page grows with it")
     options = parser.parse_args(arguments)
     results = options.results
-    try:
-        text = page(results, options.seeds).encode()
-        file = results / "report.html"
-        file.write_bytes(text)
-        print(f"{file} ({len(text) / 1e6:.1f} MB)")
-    except (records.RecordError, OSError) as error:
-        print(error, file=sys.stderr)
-        return 2
+    text = page(results, options.seeds)
+    print(f"{files.replace_file(results / 'report.html', text)} ({len(text) / 1e6:.1f} MB)")
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    files.run(main)

@@ -13,15 +13,16 @@ to that) to the largest: 1 is proportional, 0 is constant.
 """
 
 import argparse
-import csv
 import math
 import subprocess
 import sys
 from pathlib import Path
 
 try:
-    import records
+    import files
     import style
+    import tables
+    from files import InputError
     from matplotlib import lines
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas and matplotlib (on Debian: "
@@ -58,8 +59,8 @@ def render(program, folder, options):
     print(" ".join(command), flush=True)
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode != 0:
-        raise records.RecordError(f"{' '.join(command)}: {done.stderr.strip()}")
-    rows = records.read_table(table)
+        raise InputError(f"{' '.join(command)}: {done.stderr.strip()}")
+    rows = tables.read_table(table)
     return rows[rows["component"] == "total"].to_dict("records")
 
 
@@ -81,25 +82,20 @@ def make(program, results):
     for integrator in TWO_INTEGRATORS:
         runs = render(program, results, {**PASSES, "--integrator": integrator, "--threads": "1"})
         table += [row_of("passes", int(run["pass"]), run) for run in runs if int(run["pass"]) > 0]
-    with open(results / "scaling.csv", "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(table)
+    tables.write_table(results / "scaling.csv", COLUMNS, table)
     for name in ["run.csv", "run.exr"]:
         (results / name).unlink()
 
 
 def read(file):
     """The rows of scaling.csv, numbers as numbers."""
-    if not file.is_file():
-        raise records.RecordError(f"{file}: is not there; expected what --run PROGRAM makes")
-    table = records.read_table(file)
-    missing = [column for column in COLUMNS if column not in table.columns]
-    if missing:
-        raise records.RecordError(f"{file}: lacks the columns {', '.join(missing)}")
+    if not files.is_there(file):
+        raise InputError(f"{file}: is not there; expected what --run PROGRAM makes")
+    table = tables.read_table(file)
+    tables.require_columns(file, table, COLUMNS, "make it anew with --run")
     for column in COLUMNS:
         if column not in ["axis", "integrator"]:
-            table[column] = records.to_numbers(file, table[column], whole=False)
+            table[column] = tables.to_numbers(file, table[column])
     return table
 
 
@@ -188,6 +184,7 @@ def limits(axes, every, label):
     axes.set_ylabel(label)
 
 
+@files.command
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
                                      formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -196,18 +193,14 @@ def main(arguments):
     parser.add_argument("results", metavar="RESULTS_DIR", type=Path, help="folder of scaling.csv")
     parser.add_argument("--run", metavar="PROGRAM", type=Path, help="make the records first, with this photonlab")
     chosen = parser.parse_args(arguments)
-    try:
-        if chosen.run:
-            make(chosen.run, chosen.results)
-        table = read(chosen.results / "scaling.csv")
-        print("\n".join(statements(table)))
-        for file in style.save(draw(table), chosen.results, "scaling"):
-            print(file)
-    except (records.RecordError, OSError) as error:
-        print(error, file=sys.stderr)
-        return 2
+    if chosen.run:
+        make(chosen.run, chosen.results)
+    table = read(chosen.results / "scaling.csv")
+    print("\n".join(statements(table)))
+    for file in style.save(draw(table), chosen.results, "scaling"):
+        print(file)
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    files.run(main)

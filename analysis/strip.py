@@ -12,6 +12,7 @@ import textwrap
 from pathlib import Path
 
 try:
+    import files
     import numpy
     import pictures
     import records
@@ -49,9 +50,7 @@ def snapshots_of(results, scene_rows, label, seed):
         return None
     run = rows["run"].iloc[0]
     record = records.read_run(results, run)
-    folder = results / "runs" / run
-    files = {snapshot["pass"]: folder / snapshot["file"] for snapshot in record["snapshots"]}
-    return run, record, {number: file for number, file in files.items() if file.is_file()}
+    return run, record, records.snapshot_files(results, run, record)
 
 
 def chosen_pass(passes_of_methods, wanted):
@@ -83,28 +82,28 @@ def collect(results, scene, scene_rows, labels, options):
         else:
             seed = "" if options.seed is None else f" with seed {options.seed}"
             print(f"{scene}: {label}: no snapshots of a run{seed}, so not in the strip")
-    common = chosen_pass([set(files) for _, _, files in found.values()], getattr(options, "pass"))
+    common = chosen_pass([set(by_pass) for *_, by_pass in found.values()], getattr(options, "pass"))
 
     entries, reference, floor = [], None, 0.0
-    for label, (run, record, files) in found.items():
-        number = max(files) if common is None else common
-        if number not in files:
-            present = ", ".join(map(str, sorted(files)))
+    for label, (run, record, by_pass) in found.items():
+        number = max(by_pass) if common is None else common
+        if number not in by_pass:
+            present = ", ".join(map(str, sorted(by_pass)))
             print(f"{scene}: {label}: no snapshot of pass {number}; there are those of {present}")
             continue
         rows = scene_rows[scene_rows["run"] == run]
         carried = rows["direct"].iloc[0] == "photons"
-        image = pictures.read_component(files[number], options.component)
+        image = pictures.read_component(by_pass[number], options.component)
         if image is None:
-            print(f"{scene}: {label}: {files[number]} has no layer {options.component}")
+            print(f"{scene}: {label}: {by_pass[number]} has no layer {options.component}")
             continue
         reference_files = records.reference_files(results, record)
         own_reference = pictures.read_reference(reference_files, options.component, carried)
         if own_reference is None:
             print(f"{scene}: {label}: no reference for the {COMPONENT_TITLES[options.component]}" +
                   (f" at {record['reference']['path']}" if record.get("reference") else "") + ", so no difference")
-        elif own_reference.shape != image.shape:
-            raise records.RecordError(f"{files[number]}: differs in size from its reference, {reference_files[0]}")
+        else:
+            pictures.require_same_size(by_pass[number], image, reference_files[0], own_reference)
         if reference is None and own_reference is not None:
             reference = own_reference
             floor = records.root(rows[rows["component"] == options.component]["reference_floor"].max())
@@ -179,6 +178,7 @@ def draw_strip(title, entries, reference, floor, exposure):
     return figure
 
 
+@files.command
 def main(arguments):
     parser = argparse.ArgumentParser(
         description=__doc__.split("\n\n")[0], formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -198,26 +198,22 @@ def main(arguments):
                         help="factor on radiance in the pictures (default: 97%% of the lit pixels are below white)")
     options = parser.parse_args(arguments)
     results = options.results
-    try:
-        rows = records.read_records(results)
-        labels = records.methods_in_order(rows)
-        for scene, scene_rows in rows.groupby("scene", sort=False):
-            own_labels = [label for label in labels if label in set(scene_rows["method"])]
-            entries, reference, floor = collect(results, scene, scene_rows, own_labels, options)
-            if not entries:
-                print(f"{scene}: nothing to show, so no strip")
-                continue
-            exposure = options.exposure or pictures.exposure_for(entries[0][2] if reference is None else reference)
-            title = f"{scene}: {COMPONENT_TITLES[options.component]}"
-            figure = draw_strip(title, entries, reference, floor, exposure)
-            suffix = "" if options.component == "total" else f"-{options.component}"
-            for file in style.save(figure, results, f"strip-{records.file_name(scene)}{suffix}"):
-                print(file)
-    except (records.RecordError, OSError) as error:
-        print(error, file=sys.stderr)
-        return 2
+    rows = records.read_records(results)
+    labels = records.methods_in_order(rows)
+    for scene, scene_rows in rows.groupby("scene", sort=False):
+        own_labels = [label for label in labels if label in set(scene_rows["method"])]
+        entries, reference, floor = collect(results, scene, scene_rows, own_labels, options)
+        if not entries:
+            print(f"{scene}: nothing to show, so no strip")
+            continue
+        exposure = options.exposure or pictures.exposure_for(entries[0][2] if reference is None else reference)
+        title = f"{scene}: {COMPONENT_TITLES[options.component]}"
+        figure = draw_strip(title, entries, reference, floor, exposure)
+        suffix = "" if options.component == "total" else f"-{options.component}"
+        for file in style.save(figure, results, f"strip-{records.file_name(scene)}{suffix}"):
+            print(file)
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    files.run(main)

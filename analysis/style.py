@@ -4,10 +4,12 @@ that has none. So a method has a colour, a marker and a line of its own, and eac
 Colours: Okabe and Ito 2008, "Color Universal Design", with a grey in place of the yellow, which a white page swallows.
 """
 
+import io
 import itertools
 import math
 import textwrap
 
+import files
 import matplotlib
 
 matplotlib.use("Agg")    # draws to files and never opens a window
@@ -135,10 +137,8 @@ def two_digits(value):
 
 def save(figure, results, name):
     """Writes RESULTS/figures/NAME.png and .pdf; returns both names. The same records give the same bytes: no date."""
-    folder = results / "figures"
-    folder.mkdir(exist_ok=True)
-    files = [folder / f"{name}.png", folder / f"{name}.pdf"]
-    figure.savefig(files[0], metadata={"Software": None})
-    figure.savefig(files[1], metadata={"CreationDate": None, "Creator": None, "Producer": None})
+    drawn = {"png": io.BytesIO(), "pdf": io.BytesIO()}
+    figure.savefig(drawn["png"], format="png", metadata={"Software": None})
+    figure.savefig(drawn["pdf"], format="pdf", metadata={"CreationDate": None, "Creator": None, "Producer": None})
     pyplot.close(figure)
-    return files
+    return [files.replace_file(results / "figures" / f"{name}.{kind}", data.getvalue()) for kind, data in drawn.items()]

@@ -13,15 +13,16 @@ the note says so.
 """
 
 import argparse
-import csv
 import math
 import sys
 from pathlib import Path
 
 try:
+    import files
     import numpy
     import records
     import style
+    import tables
     from matplotlib import lines
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas and matplotlib (on Debian: "
@@ -129,6 +130,7 @@ def draw(recorded, table, labels):
     return figure
 
 
+@files.command
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
                                      formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -139,29 +141,21 @@ def main(arguments):
                         help="errors to be reached (default: 0.1 0.01 0.001)")
     options = parser.parse_args(arguments)
     results = options.results
-    try:
-        recorded = records.read_records(results)
-        labels = records.methods_in_order(recorded)
-        table = table_of(recorded, labels, sorted(set(options.thresholds), reverse=True))
-        if not table:
-            print(f"{results}: no relmse was recorded (was there a reference?), so no times")
-            return 0
-        with open(results / "time-to-error.csv", "w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, COLUMNS, restval="", lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(table)
-        print(results / "time-to-error.csv")
-        figure = draw(recorded, table, labels)
-        if figure is None:
-            print(f"{results}: no method reached a threshold, so there is nothing to draw")
-            return 0
-        for file in style.save(figure, results, "time-to-error"):
-            print(file)
-    except (records.RecordError, OSError) as error:
-        print(error, file=sys.stderr)
-        return 2
+    recorded = records.read_records(results)
+    labels = records.methods_in_order(recorded)
+    table = table_of(recorded, labels, sorted(set(options.thresholds), reverse=True))
+    if not table:
+        print(f"{results}: no relmse was recorded (was there a reference?), so no times")
+        return 0
+    print(tables.write_table(results / "time-to-error.csv", COLUMNS, table))
+    figure = draw(recorded, table, labels)
+    if figure is None:
+        print(f"{results}: no method reached a threshold, so there is nothing to draw")
+        return 0
+    for file in style.save(figure, results, "time-to-error"):
+        print(file)
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    files.run(main)

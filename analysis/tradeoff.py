@@ -14,16 +14,18 @@ it may be so by chance, which their error bars tell.
 """
 
 import argparse
-import csv
 import math
 import sys
 from pathlib import Path
 
 try:
+    import files
     import numpy
     import records
     import style
+    import tables
     from decomposition import point_of
+    from files import InputError
     from matplotlib import lines
     from scipy import stats
 except ImportError as error:
@@ -100,7 +102,7 @@ def table_of(file, scene, rows, columns, clock):
     points = {name: last_rows(own) for name, own in rows.groupby(names, sort=False)}
     defaults = [name for name in points if name.startswith(DEFAULT)]
     if not defaults:
-        raise records.RecordError(f"{file}: scene {scene} has no method named {DEFAULT} with errors; expected one to compare with")
+        raise InputError(f"{file}: scene {scene} has no method named {DEFAULT} with errors; expected one to compare with")
     table = []
     for name, own in points.items():
         compared = name if name in defaults else min(
@@ -112,7 +114,7 @@ def table_of(file, scene, rows, columns, clock):
         ratios = {"error": (1.0, 1.0, 1.0), "time": (1.0, 1.0, 1.0)}
         if name != compared:
             if not len(seeds):
-                raise records.RecordError(f"{file}: {scene}_{name} has no seed in common with {scene}_{compared}")
+                raise InputError(f"{file}: {scene}_{name} has no seed in common with {scene}_{compared}")
             ratios = {"error": ratio_of(own.loc[seeds, error].to_numpy(), default.loc[seeds, error].to_numpy(), 0.5),
                       "time": ratio_of(own.loc[seeds, clock].to_numpy(), default.loc[seeds, clock].to_numpy(), 1.0)}
         table.append({
@@ -217,6 +219,7 @@ def draw_scene(table, clock):
     return figure
 
 
+@files.command
 def main(arguments):
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0],
                                      formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -226,31 +229,20 @@ def main(arguments):
     parser.add_argument("--clock", choices=CLOCKS, default="seconds", help="what time is taken from (default: seconds)")
     options = parser.parse_args(arguments)
     results, clock = options.results, options.clock
-    try:
-        recorded = records.read_records(results)
-        tables = [table_of(results / "iterations.csv", scene, rows, records.settings_of(recorded), clock)
-                  for scene, rows in recorded.groupby("scene", sort=False)]
-        with open(results / "tradeoff.csv", "w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, COLUMNS, extrasaction="ignore", lineterminator="\n")
-            writer.writeheader()
-            for row in (row for table in tables for row in table):
-                writer.writerow({column: "" if isinstance(value, float) and math.isnan(value) else value
-                                 for column, value in row.items()})
-        (results / "tradeoff.md").write_text(markdown(tables, clock), encoding="utf-8")
-        print(results / "tradeoff.csv")
-        print(results / "tradeoff.md")
-        for table in tables:
-            figure = draw_scene(table, clock)
-            if figure is None:
-                print(f"{table[0]['scene']}: nothing is resolved, so there is nothing to draw")
-                continue
-            for file in style.save(figure, results, f"tradeoff-{records.file_name(table[0]['scene'])}"):
-                print(file)
-    except (records.RecordError, OSError) as error:
-        print(error, file=sys.stderr)
-        return 2
+    recorded = records.read_records(results)
+    of_scenes = [table_of(results / "iterations.csv", scene, rows, records.settings_of(recorded), clock)
+              for scene, rows in recorded.groupby("scene", sort=False)]
+    print(tables.write_table(results / "tradeoff.csv", COLUMNS, [row for table in of_scenes for row in table]))
+    print(files.replace_file(results / "tradeoff.md", markdown(of_scenes, clock)))
+    for table in of_scenes:
+        figure = draw_scene(table, clock)
+        if figure is None:
+            print(f"{table[0]['scene']}: nothing is resolved, so there is nothing to draw")
+            continue
+        for file in style.save(figure, results, f"tradeoff-{records.file_name(table[0]['scene'])}"):
+            print(file)
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    files.run(main)

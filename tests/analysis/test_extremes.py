@@ -10,7 +10,7 @@ import synthetic
 
 try:
     import extremes
-    import records
+    import files
     from test_strip import write_exr
 except ImportError as error:
     raise unittest.SkipTest(f"{error} (Debian: python3-openimageio)")
@@ -90,7 +90,7 @@ class Extremes(unittest.TestCase):
         self.assertAlmostEqual(extremes.foot_answer() * 2 * numpy.pi, numpy.mean((1 + squares) ** -1.5), delta=1e-9)
 
     def test_refuses_other_scenes_and_missing_ones(self):
-        with self.assertRaisesRegex(records.RecordError, "scene cornell-box: expected a variant"):
+        with self.assertRaisesRegex(files.InputError, "scene cornell-box: expected a variant"):
             extremes.axis_of("cornell-box")
         self.make(self.results, {("unit-10", "ppm", "0.0001"): [1.0]})
         code, _, errors = synthetic.run(extremes, self.results, self.rays)

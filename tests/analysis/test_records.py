@@ -7,6 +7,7 @@ from pathlib import Path
 
 import synthetic
 
+import files
 import records
 
 
@@ -45,7 +46,7 @@ class Reading(Folder):
         self.assertEqual(len(rows), 128)
 
     def refused(self, *parts):
-        with self.assertRaises(records.RecordError) as caught:
+        with self.assertRaises(files.InputError) as caught:
             records.read_records(self.results)
         for part in parts:
             self.assertIn(part, str(caught.exception))
@@ -59,11 +60,11 @@ class Reading(Folder):
 
     def test_refuses_an_empty_file(self):
         (self.results / "iterations.csv").write_text("")
-        self.refused("iterations.csv: lacks the columns schema, experiment")
+        self.refused("iterations.csv: is not a table in CSV: it is empty")
 
     def test_refuses_what_is_not_text(self):
         (self.results / "iterations.csv").write_bytes(b"\x89PNG\r\n\x1a\n\x00\xff\xfe")
-        self.refused("iterations.csv: is not a table in CSV")
+        self.refused("iterations.csv: is not text in UTF-8: byte 1")
 
     def test_refuses_a_header_without_rows(self):
         synthetic.write_csv(self.results, [])
@@ -221,14 +222,14 @@ class Runs(Folder):
         self.assertEqual(records.reference_files(self.results, record), [])
 
     def test_refuses_a_run_that_is_not_there_or_not_json_or_something_else(self):
-        with self.assertRaisesRegex(records.RecordError, "run.json: cannot be read"):
+        with self.assertRaisesRegex(files.InputError, "run.json: cannot be read"):
             records.read_run(self.results, "none")
         file = synthetic.write_run(self.results, "r", [], None) / "run.json"
         for text, message in [("{", "run.json: is not JSON"), ("[]", "expected \"snapshots\""),
                               ('{"snapshots": [{"pass": "1", "file": "x"}]}', "expected \"snapshots\""),
                               ('{"snapshots": [], "reference": "x"}', "expected \"reference\"")]:
             file.write_text(text)
-            with self.assertRaisesRegex(records.RecordError, message):
+            with self.assertRaisesRegex(files.InputError, message):
                 records.read_run(self.results, "r")
 
     def test_a_reference_is_found_from_the_folder_in_which_the_run_was_started(self):

@@ -8,7 +8,7 @@ from pathlib import Path
 import synthetic
 
 try:
-    import records
+    import files
     import scaling
 except ImportError as error:
     raise unittest.SkipTest(f"{error} (Debian: python3-pandas python3-matplotlib)")
@@ -77,7 +77,7 @@ class Scaling(unittest.TestCase):
         program = self.results / "program"
         program.write_text("#!/bin/sh\necho 'no such scene' >&2\nexit 2\n")
         program.chmod(0o755)
-        with self.assertRaisesRegex(records.RecordError, "render .*: no such scene"):
+        with self.assertRaisesRegex(files.InputError, "render .*: no such scene"):
             scaling.make(program, self.results)
 
 

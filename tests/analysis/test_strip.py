@@ -13,6 +13,7 @@ try:
     import OpenImageIO
 
     import pictures
+    import files
     import records
     import strip
 except ImportError as error:
@@ -82,17 +83,17 @@ class Strip(unittest.TestCase):
     def test_refuses_what_is_no_image_or_has_no_colour(self):
         file = self.results / "bad.exr"
         file.write_text("no")
-        with self.assertRaisesRegex(records.RecordError, "bad.exr: cannot be read"):
+        with self.assertRaisesRegex(files.InputError, "bad.exr: cannot be read"):
             pictures.read_component(file, "total")
         write_exr(file, {"Y": numpy.ones((2, 2))})
-        with self.assertRaisesRegex(records.RecordError, "bad.exr: has no channels R, G, B"):
+        with self.assertRaisesRegex(files.InputError, "bad.exr: has no channels R, G, B"):
             pictures.read_component(file, "total")
 
     def test_refuses_a_cut_image(self):
         file = self.results / "cut.exr"
         write_exr(file, {channel: numpy.random.default_rng(1).random((64, 64)) for channel in "RGB"})
         file.write_bytes(file.read_bytes()[:10000])
-        with self.assertRaisesRegex(records.RecordError, "cut.exr: "):
+        with self.assertRaisesRegex(files.InputError, "cut.exr: "):
             pictures.read_component(file, "total")
 
     def test_the_mean_of_the_halves_is_the_reference(self):
@@ -159,7 +160,7 @@ class Strip(unittest.TestCase):
                       {channel: numpy.ones((8, 8)) for channel in "RGB"})
         code, output, errors = self.run_command()
         self.assertEqual(code, 2)
-        self.assertIn("differs in size from its reference", errors)
+        self.assertIn(f"differs in size from {self.results}/reference/box/half_a.exr", errors)
 
     def test_bad_input_ends_with_2_and_a_message(self):
         code, output, errors = self.run_command()

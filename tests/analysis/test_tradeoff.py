@@ -9,7 +9,6 @@ import numpy
 import synthetic
 
 try:
-    import records
     import tradeoff
 except ImportError as error:
     raise unittest.SkipTest(f"{error} (Debian: python3-openimageio)")
