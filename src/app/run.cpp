@@ -40,6 +40,11 @@ void run(const RunOptions& options) {
     fmt::print("{} runs made, {} were finished already\n", outcome.ran, outcome.skipped);
     fmt::print("wrote {}: {} of {} runs\n", outcome.records.string(), outcome.merged, experiment.runs.size());
     fmt::print("wrote {}: run.json, iterations.csv and snapshots of each\n", (results / "runs").string());
+    if (!outcome.left_out.empty())
+        throw InputError(
+            fmt::format("{}; {} finished runs like this one are not in {}, and are made again by the same "
+                        "command without --only",
+                        outcome.left_out[0], outcome.left_out.size(), outcome.records.string()));
     if (outcome.is_interrupted) throw Interrupted("interrupted, and saved; the same command goes on from there");
 }
 

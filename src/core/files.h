@@ -45,6 +45,8 @@ public:
     void append(std::string_view text);
 
     bool is_empty() const { return size_ == 0; }
+    std::uint64_t size() const { return size_; }
+    std::string hash() const { return hash_.text(); }  ///< of what was appended (hash.h)
 
     /// Saves how far the file has grown, or cuts a file that has grown since back to that. Throws InputError when it is
     /// not the same up to there.

@@ -8,26 +8,15 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "experiment/kept_files.h"
 #include "image/exr.h"
 
 namespace photonlab {
 
 namespace {
 
+constexpr const char* key_attribute = "photonlab.key";
 constexpr const char* seeds_attribute = "photonlab.seeds";
-
-std::vector<std::uint64_t> read_seeds(const std::filesystem::path& file, const Metadata& metadata) {
-    const auto found = metadata.find(seeds_attribute);
-    std::vector<std::uint64_t> seeds;
-    if (found != metadata.end()) {
-        std::istringstream stream(found->second);
-        for (std::uint64_t seed = 0; stream >> seed;) seeds.push_back(seed);
-    }
-    if (seeds.empty())
-        throw InputError(file.string(), fmt::format("expected the attribute {}, whole numbers; remove the folder {}",
-                                                    seeds_attribute, file.parent_path().string()));
-    return seeds;
-}
 
 /// One image of all passes: emission, which is the same in all of them, and each pass's other layers under its name.
 Image stack(const std::vector<PassImage>& images) {
@@ -43,64 +32,101 @@ Image stack(const std::vector<PassImage>& images) {
 
 }  // namespace
 
+SlotContent read_slot_content(const std::filesystem::path& file) {
+    Metadata metadata = read_sealed_metadata(file);
+    SlotContent content{metadata[key_attribute], {}};
+    std::istringstream stream(metadata[seeds_attribute]);
+    for (std::uint64_t seed = 0; stream >> seed;) content.seeds.push_back(seed);
+    if (content.key.empty() || content.seeds.empty() || !stream.eof())
+        throw InputError(file.string(), fmt::format("expected the attributes {}, and {}, whole numbers", key_attribute,
+                                                    seeds_attribute));
+    return content;
+}
+
 Ensemble::Ensemble(std::filesystem::path folder, std::string key, Json description)
-    : folder_(std::move(folder)), key_(std::move(key)), description_(std::move(description)), seeds_(ensemble_slots) {
-    description_["schema"] = 1;
+    : folder_(std::move(folder)), key_(std::move(key)), description_(std::move(description)), slots_(ensemble_slots) {
+    description_["schema"] = 2;
     description_["key"] = key_;
     description_["slots"] = ensemble_slots;
-    const std::filesystem::path file = folder_ / "ensemble.json";
-    if (!std::filesystem::exists(file)) return;
-    const Json stored = Json::parse(read_text_file(file), nullptr, false);
-    is_described_ = stored.is_object() && stored.contains("key") && stored["key"] == key_;
-    if (!is_described_) return;
     for (std::size_t slot = 0; slot < ensemble_slots; ++slot) {
         if (!std::filesystem::exists(slot_file(slot))) continue;
-        seeds_[slot] = read_seeds(slot_file(slot), read_exr_metadata(slot_file(slot)));
+        try {
+            SlotContent content = read_slot_content(slot_file(slot));
+            if (content.key == key_) {
+                set_slot(slot, std::move(content.seeds));
+            } else {
+                require_seal(slot_file(slot));  // a key that is damaged says nothing of the other slots
+                is_of_others_ = true;
+            }
+        } catch (const InputError& error) {
+            faults_.push_back(error.what());
+        }
     }
+    if (!is_of_others_) return;
+    for (std::size_t slot = 0; slot < ensemble_slots; ++slot) set_slot(slot, {});
+    faults_.clear();
 }
 
 std::filesystem::path Ensemble::slot_file(std::size_t slot) const {
     return folder_ / fmt::format("slot-{:02}.exr", slot);
 }
 
-bool Ensemble::contains(std::uint64_t seed) const {
-    return std::any_of(seeds_.begin(), seeds_.end(), [&](const std::vector<std::uint64_t>& seeds) {
-        return std::find(seeds.begin(), seeds.end(), seed) != seeds.end();
-    });
+void Ensemble::set_slot(std::size_t slot, std::vector<std::uint64_t> seeds) {
+    slots_[slot] = std::move(seeds);
+    seeds_.clear();
+    for (const auto& own : slots_) seeds_.insert(own.begin(), own.end());
+}
+
+void Ensemble::check_slots() {
+    for (std::size_t slot = 0; slot < ensemble_slots; ++slot) {
+        if (slots_[slot].empty()) continue;
+        try {
+            require_seal(slot_file(slot));
+        } catch (const InputError& error) {
+            faults_.push_back(error.what());
+            set_slot(slot, {});
+        }
+    }
 }
 
 void Ensemble::describe() const {
-    if (is_described_) write_text_file(folder_ / "ensemble.json", description_.dump(2) + "\n");
+    if (seeds_.empty()) return;
+    const std::filesystem::path file = folder_ / "ensemble.json";
+    const std::string text = with_checksum(description_);
+    if (!std::filesystem::exists(file) || read_text_file(file) != text) write_text_file(file, text);
 }
 
 void Ensemble::add(std::uint64_t seed, const std::vector<PassImage>& images) {
     if (contains(seed)) return;
-    if (!is_described_) {
-        std::filesystem::remove_all(folder_);
-        make_folder(folder_);
-    }
-    is_described_ = true;
-    describe();
+    if (is_of_others_)
+        for (std::size_t slot = 0; slot < ensemble_slots; ++slot) std::filesystem::remove(slot_file(slot));
+    is_of_others_ = false;
+    make_folder(folder_);
 
-    const auto fewest = std::min_element(seeds_.begin(), seeds_.end(),
+    const auto fewest = std::min_element(slots_.begin(), slots_.end(),
                                          [](const auto& a, const auto& b) { return a.size() < b.size(); });
-    const std::filesystem::path file = slot_file(static_cast<std::size_t>(fewest - seeds_.begin()));
+    const auto slot = static_cast<std::size_t>(fewest - slots_.begin());
+    const std::filesystem::path file = slot_file(slot);
+    std::vector<std::uint64_t> seeds = *fewest;
     Image sums = stack(images);
-    if (!fewest->empty()) {
+    if (!seeds.empty()) {
+        try {
+            require_seal(file);
+        } catch (const InputError& error) {
+            throw InputError(fmt::format("{}; remove it, and the runs of its seeds are made again", error.what()));
+        }
         const Image stored = read_exr(file);
         for (Layer& layer : sums.layers) {
             const std::vector<Color>* before = stored.find(layer.name);
             if (!before || stored.layers.size() != sums.layers.size() || before->size() != layer.pixels.size())
-                throw InputError(file.string(), fmt::format("expected the sums of other seeds of the same passes; "
-                                                            "remove the folder {}",
-                                                            folder_.string()));
+                throw InputError(file.string(), "expected the sums of other seeds of the same passes");
             for (std::size_t i = 0; i < layer.pixels.size(); ++i) layer.pixels[i] += (*before)[i];
         }
     }
-    std::vector<std::uint64_t> seeds = *fewest;
     seeds.push_back(seed);
-    write_exr(file, sums, {{seeds_attribute, fmt::format("{}", fmt::join(seeds, " "))}});
-    *fewest = std::move(seeds);
+    set_slot(slot, seeds);
+    describe();
+    write_sealed_exr(file, sums, {{key_attribute, key_}, {seeds_attribute, fmt::format("{}", fmt::join(seeds, " "))}});
 }
 
 }  // namespace photonlab

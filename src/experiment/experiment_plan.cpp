@@ -7,10 +7,10 @@
 #include <map>
 #include <set>
 
-#include "core/files.h"
 #include "core/hash.h"
 #include "experiment/progress.h"
 #include "experiment/reference.h"
+#include "experiment/run_record.h"
 #include "experiment/settings_io.h"
 #include "experiment/time_estimate.h"
 #include "experiment/version.h"
@@ -80,15 +80,8 @@ std::size_t images_kept(const Experiment& experiment, const PreparedRun& run) {
 }  // namespace
 
 bool is_finished(const std::filesystem::path& folder, const std::string& key) {
-    const std::filesystem::path file = folder / "run.json";
-    if (!std::filesystem::exists(file) || !std::filesystem::exists(folder / "iterations.csv")) return false;
-    const Json json = Json::parse(read_text_file(file), nullptr, false);
-    if (!json.is_object()) return false;
-    const auto finished = json.find("finished");
-    const auto stored = json.find("key");
-    const Json checksum = json.value("/checksums/iterations.csv"_json_pointer, Json());
-    return finished != json.end() && *finished == true && stored != json.end() && *stored == key &&
-           checksum == hash_file(folder / "iterations.csv");
+    const std::optional<FinishedRun> run = read_finished_run(folder);
+    return run && run->key == key && faults_of(folder, *run, Check::Records).empty();
 }
 
 bool is_made(const Experiment& experiment, const PreparedRun& run, const std::filesystem::path& results) {

@@ -9,10 +9,9 @@
 
 #include "core/file_lock.h"
 #include "core/files.h"
+#include "experiment/merged_records.h"
 #include "experiment/progress.h"
-#include "experiment/recorder.h"
 #include "experiment/reference.h"
-#include "experiment/run_record.h"
 #include "transport/plain_images.h"
 
 namespace photonlab {
@@ -31,34 +30,6 @@ void require_same_experiment(const Experiment& experiment, const std::filesystem
                                                     "folder for the results",
                                                     json.at("experiment").dump(), experiment.name));
     }
-}
-
-/// The rows of a run's file, without its header, which must be `header`.
-std::string rows_of(const std::filesystem::path& file, const std::string& header) {
-    const std::string text = read_text_file(file);
-    const std::size_t header_end = text.find('\n');
-    if (header_end == std::string::npos || text.substr(0, header_end) != header)
-        throw InputError(file.string(), "its columns are not those of this program; delete it");
-    return text.substr(header_end + 1);
-}
-
-/// The rows of every finished run, in the experiment's order; returns how many runs there are.
-std::size_t merge_records(const Experiment& experiment, const std::filesystem::path& results,
-                          const std::map<std::string, std::string>& keys) {
-    std::string records = csv_header() + "\n";
-    std::string probes;
-    std::size_t count = 0;
-    for (const ExperimentRun& run : experiment.runs) {
-        const auto key = keys.find(run.name);
-        const std::filesystem::path folder = results / "runs" / run.name;
-        if (key == keys.end() || !is_finished(folder, key->second)) continue;
-        records += rows_of(folder / "iterations.csv", csv_header());
-        if (std::filesystem::exists(folder / "probes.csv")) probes += rows_of(folder / "probes.csv", probes_header);
-        ++count;
-    }
-    write_text_file(results / "iterations.csv", records);
-    if (!probes.empty()) write_text_file(results / "probes.csv", probes_header + "\n" + probes);
-    return count;
 }
 
 /// Runs of a group that this process may make, while their locks are held.
@@ -224,12 +195,14 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
         for (const PreparedRun& ready : prepared.runs) ensemble_of(experiment, ready, results).describe();
 
     // Runs outside the selection may be finished too: their keys need their scenes, so all are prepared for the merge.
-    std::map<std::string, std::string> keys;
     const bool is_all = prepared.runs.size() == experiment.runs.size();
     const PreparedExperiment all = is_all ? PreparedExperiment{} : prepare_experiment(experiment, results);
-    for (const PreparedRun& ready : is_all ? prepared.runs : all.runs) keys[ready.run->name] = ready.key;
+    std::vector<RunToMerge> runs;
+    for (const PreparedRun& ready : is_all ? prepared.runs : all.runs) runs.push_back({ready.folder, ready.key});
     const FileLock lock = FileLock::wait_for(results / "lock");
-    outcome.merged = merge_records(experiment, results, keys);
+    MergedRecords merged = merge_records(experiment.name, results, runs);
+    outcome.merged = merged.runs;
+    outcome.left_out = std::move(merged.faults);
     return outcome;
 }
 

@@ -1,7 +1,7 @@
 // Runs an experiment: whatever of it is not finished, each run into a folder of its own. Runs of one scene and seed
 // with the same photons a pass run side by side and share them; what is shared is charged in full to each.
 //
-//     RESULTS/iterations.csv                    all finished runs of the experiment, replaced at once at the end
+//     RESULTS/iterations.csv, RESULTS/merged.json    all finished runs of the experiment: merged_records.h
 //     RESULTS/runs/RUN/iterations.csv           the run's rows, appended as its passes finish
 //     RESULTS/runs/RUN/snapshots/pass-000064.exr
 //     RESULTS/runs/RUN/run.json                 written last: a folder without it is not finished
@@ -27,10 +27,11 @@ namespace photonlab {
 
 struct ExperimentOutcome {
     std::size_t ran = 0;
-    std::size_t skipped = 0;        ///< were finished already, or by another process
-    std::filesystem::path records;  ///< the merged iterations.csv
-    std::size_t merged = 0;         ///< runs in it
-    bool is_interrupted = false;    ///< what was running is saved
+    std::size_t skipped = 0;            ///< were finished already, or by another process
+    std::filesystem::path records;      ///< the merged iterations.csv
+    std::size_t merged = 0;             ///< runs in it
+    bool is_interrupted = false;        ///< what was running is saved
+    std::vector<std::string> left_out;  ///< of it: what is wrong with runs that had finished, a line each
 };
 
 /// Runs what is not finished, from its checkpoints, and merges the records. Throws InputError before anything is run

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/files.h"
+#include "experiment/kept_files.h"
 #include "experiment/reference.h"
 #include "experiment/runner.h"
 #include "image/image.h"
@@ -80,6 +81,9 @@ public:
 
     /// Saves how far the file has grown and what was counted, or goes on from there.
     void exchange(StateArchive& archive);
+
+    /// Of the file as it was written, whatever has become of it since.
+    FileStamp stamp() const { return {file_.size(), file_.hash()}; }
 
     const RunIdentity& identity() const { return identity_; }
     std::uint64_t nonfinite_pixels() const { return nonfinite_count_; }  ///< summed over the rows of component total

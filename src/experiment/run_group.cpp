@@ -8,16 +8,13 @@
 
 #include "core/file_lock.h"
 #include "core/files.h"
-#include "core/hash.h"
+#include "experiment/merged_records.h"
 #include "experiment/progress.h"
 #include "experiment/recorder.h"
 #include "experiment/run_record.h"
 #include "image/exr.h"
 
 namespace photonlab {
-
-const std::string probes_header =
-    "schema,experiment,run,scene,seed,probe,x,y,pass,radius,photons,density,radiance_r,radiance_g,radiance_b";
 
 namespace {
 
@@ -100,9 +97,17 @@ OpenRun open_run(const RunGroup& group, const PreparedRun& prepared) {
     return {
         &prepared,
         checkpoint_of(group.experiment, prepared),
-        RunRecord{group.experiment.title, prepared.run->method, prepared.key, entry.file,
-                  std::chrono::system_clock::now(), 0.0, group.runs.size(), prepared.run->plan.recorded,
-                  std::move(snapshots)},
+        RunRecord{group.experiment.title,
+                  prepared.run->method,
+                  prepared.key,
+                  entry.file,
+                  std::chrono::system_clock::now(),
+                  0.0,
+                  group.runs.size(),
+                  prepared.run->plan.recorded,
+                  std::move(snapshots),
+                  std::nullopt,
+                  {}},
         Recorder({group.experiment.name, prepared.run->name, entry.name, prepared.settings, group.scene.camera.width,
                   group.scene.camera.height, group.experiment.samples_per_pixel, group.hit_points.points.size()},
                  group.reference, prepared.folder / "iterations.csv"),
@@ -113,14 +118,21 @@ OpenRun open_run(const RunGroup& group, const PreparedRun& prepared) {
 /// Writes what is written once all passes are done; returns a line on it.
 std::string finish(const RunGroup& group, OpenRun& run, const RunState& last) {
     const std::filesystem::path& folder = run.prepared->folder;
-    if (!run.probes.empty()) write_text_file(folder / "probes.csv", probes_header + "\n" + run.probes);
+    run.record.files["iterations.csv"] = run.recorder.stamp();
+    for (const Snapshot& snapshot : run.record.snapshots)
+        run.record.files[snapshot.file] = stamp_of(folder / snapshot.file);
+    if (!run.probes.empty()) {
+        const std::string probes = probes_header + "\n" + run.probes;
+        write_text_file(folder / "probes.csv", probes);
+        run.record.files["probes.csv"] = stamp_of_text(probes);
+    }
     if (group.experiment.decomposition) {
         const FileLock lock = FileLock::wait_for(group.results / "ensembles" / (run.prepared->run->point + ".lock"));
         ensemble_of(group.experiment, *run.prepared, group.results).add(run.prepared->run->seed, run.recorded_images);
+        run.record.ensemble = {"ensembles/" + run.prepared->run->point, run.prepared->point_key};
     }
-    Json json = run_json(run.record, run.recorder, last, group.scene, group.hit_points, group.reference);
-    json["checksums"] = {{"iterations.csv", hash_file(folder / "iterations.csv")}};
-    write_text_file(folder / "run.json", json.dump(2) + "\n");
+    write_text_file(folder / "run.json", with_checksum(run_json(run.record, run.recorder, last, group.scene,
+                                                                group.hit_points, group.reference)));
     discard(run.checkpoint);
 
     std::string line = fmt::format("finished {} in {}", run.prepared->run->name, describe_duration(last.times.total()));

@@ -63,7 +63,4 @@ Checkpoint checkpoint_of(const Experiment& experiment, const PreparedRun& prepar
 /// The sums over seeds that a run's images belong to.
 Ensemble ensemble_of(const Experiment& experiment, const PreparedRun& prepared, const std::filesystem::path& results);
 
-/// The header of probes.csv, without its end.
-extern const std::string probes_header;
-
 }  // namespace photonlab

@@ -5,12 +5,15 @@
 
 #include <fstream>
 
+#include "core/files.h"
 #include "experiment/version.h"
 #include "integrators/registry.h"
 
 namespace photonlab {
 
 namespace {
+
+constexpr int run_schema = 2;
 
 std::string processor_name() {
     std::ifstream stream("/proc/cpuinfo");
@@ -42,10 +45,12 @@ Json run_json(const RunRecord& record, const Recorder& recorder, const RunState&
     Json snapshots = Json::array();
     for (const Snapshot& snapshot : record.snapshots)
         snapshots.push_back({{"pass", snapshot.pass}, {"file", snapshot.file}});
+    Json files = Json::object();
+    for (const auto& [name, stamp] : record.files) files[name] = stamp_json(stamp);
     const bool has_radius = uses_setting(method, "radius");
 
     return Json{
-        {"schema", 1},
+        {"schema", run_schema},
         {"finished", true},
         {"key", record.key},
         {"experiment", identity.experiment},
@@ -88,6 +93,9 @@ Json run_json(const RunRecord& record, const Recorder& recorder, const RunState&
           {"nonfinite_pixels", recorder.nonfinite_pixels()}}},
         {"nonfinite_pixels", nonfinite_pixels},
         {"snapshots", snapshots},
+        {"ensemble",
+         record.ensemble ? Json{{"folder", record.ensemble->folder}, {"key", record.ensemble->key}} : Json()},
+        {"files", files},
         {"program",
          {{"name", "photonlab"},
           {"version", program.version},
@@ -100,6 +108,38 @@ Json run_json(const RunRecord& record, const Recorder& recorder, const RunState&
         {"runs_together", record.runs_together},
         {"working_directory", std::filesystem::current_path().string()},
     };
+}
+
+std::optional<FinishedRun> read_finished_run(const std::filesystem::path& folder) {
+    const std::filesystem::path file = folder / "run.json";
+    if (!std::filesystem::exists(file)) return std::nullopt;
+    const std::optional<Json> json = checked_json(read_text_file(file));
+    if (!json || json->value("schema", Json()) != run_schema || json->value("finished", Json()) != true)
+        return std::nullopt;
+    FinishedRun run;
+    try {
+        run.experiment = json->at("experiment").get<std::string>();
+        run.run = json->at("run").get<std::string>();
+        run.key = json->at("key").get<std::string>();
+        run.seed = json->at("seed").get<std::uint64_t>();
+        if (const Json& ensemble = json->at("ensemble"); !ensemble.is_null())
+            run.ensemble = {ensemble.at("folder").get<std::string>(), ensemble.at("key").get<std::string>()};
+        for (const auto& [name, value] : json->at("files").items()) {
+            const std::optional<FileStamp> stamp = stamp_from(value);
+            if (!stamp) return std::nullopt;
+            run.files.emplace(name, *stamp);
+        }
+    } catch (const Json::exception&) {
+        return std::nullopt;
+    }
+    return run;
+}
+
+std::vector<std::string> faults_of(const std::filesystem::path& folder, const FinishedRun& run, Check check) {
+    std::vector<std::string> faults;
+    for (const auto& [name, stamp] : run.files)
+        if (auto fault = fault_of(folder / name, stamp, check)) faults.push_back(std::move(*fault));
+    return faults;
 }
 
 Metadata image_metadata(const RunIdentity& identity, const RunState& state, const Scene& scene) {

@@ -1,13 +1,24 @@
-// run.json and the metadata of images: everything needed to repeat a run, taken from the objects that ran.
+// run.json and the metadata of images: everything needed to repeat a run, taken from the objects that ran; and by what
+// a run's files are known again.
+//
+//     "finished": true, "key": ..., ...
+//     "ensemble": {"folder": "ensembles/POINT", "key": "..."}     the sums that hold its images (ensemble.h); or null
+//     "files": {"iterations.csv": {"bytes": 5120, "hash": "..."}, "probes.csv": ..., "snapshots/pass-000064.exr": ...}
+//     "checksum": "..."     of run.json itself (kept_files.h, as are bytes and hash)
+//
+// `files` has every file of the run's folder but run.json. A run is what it was when all of them are.
 
 #pragma once
 
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "experiment/kept_files.h"
 #include "experiment/recorder.h"
 #include "experiment/settings_io.h"
 #include "image/exr.h"
@@ -22,6 +33,12 @@ struct Snapshot {
     std::string file;  ///< relative to the run's folder
 };
 
+/// The sums that a run's images are in.
+struct SumsOfRun {
+    std::string folder;  ///< from the results' folder
+    std::string key;
+};
+
 /// What a run says of itself beside its rows.
 struct RunRecord {
     std::string title;  ///< of the experiment
@@ -33,10 +50,28 @@ struct RunRecord {
     std::size_t runs_together = 1;  ///< that shared them, this one included
     std::vector<std::uint64_t> recorded;
     std::vector<Snapshot> snapshots;
+    std::optional<SumsOfRun> ensemble;
+    std::map<std::string, FileStamp> files;  ///< by name, from the run's folder
 };
 
 Json run_json(const RunRecord& record, const Recorder& recorder, const RunState& last, const Scene& scene,
               const HitPoints& hit_points, const Reference* reference);
+
+/// What run.json says of a finished run.
+struct FinishedRun {
+    std::string experiment;
+    std::string run;
+    std::string key;
+    std::uint64_t seed = 0;
+    std::optional<SumsOfRun> ensemble;
+    std::map<std::string, FileStamp> files;
+};
+
+/// Of a run's folder; empty when there is no run.json, or a damaged one, or one of another program.
+std::optional<FinishedRun> read_finished_run(const std::filesystem::path& folder);
+
+/// What is wrong with the run's files, one line each that begins with the file's name.
+std::vector<std::string> faults_of(const std::filesystem::path& folder, const FinishedRun& run, Check check);
 
 /// Attributes of an image after `state.pass` passes.
 Metadata image_metadata(const RunIdentity& identity, const RunState& state, const Scene& scene);

@@ -11,10 +11,10 @@
 #include <OpenEXR/ImfTestFile.h>
 #include <OpenEXR/ImfTileDescription.h>
 #include <OpenEXR/ImfVersion.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cassert>
-#include <cerrno>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -23,7 +23,8 @@
 
 #include "core/error.h"
 #include "core/files.h"
-#include "core/temporary_file.h"
+#include "core/hash.h"
+#include "core/number_in.h"
 
 namespace photonlab {
 
@@ -31,6 +32,10 @@ namespace {
 
 constexpr const char* layers_attribute = "photonlab.layers";
 constexpr const char* total_layer = "total";
+constexpr const char* bytes_attribute = "photonlab.bytes";
+constexpr const char* checksum_attribute = "photonlab.checksum";
+constexpr std::size_t bytes_digits = 20;
+constexpr std::size_t checksum_digits = 32;
 
 // A header may claim any size, and memory for it would be asked for before the first pixel is found missing. No
 // image here comes near the first limit; the third is above what OpenEXR's compressions reach unless a huge image has
@@ -232,30 +237,43 @@ std::string encode(const Image& image, const Metadata& metadata, ExrCompression 
     return stream.str();
 }
 
-}  // namespace
-
-void write_exr(const std::filesystem::path& file, const Image& image, const Metadata& metadata,
-               ExrCompression compression) {
+std::string encode_for(const std::filesystem::path& file, const Image& image, const Metadata& metadata,
+                       ExrCompression compression) {
     assert(image.width > 0 && image.height > 0 && !image.layers.empty());
     for (const Layer& layer : image.layers) {
         assert(layer.pixels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
         assert(!layer.name.empty() && layer.name.find_first_of(",.") == std::string::npos);
         static_cast<void>(layer);  // for builds without assertions
     }
-
-    std::string bytes;
     try {
-        bytes = encode(image, metadata, compression);
+        return encode(image, metadata, compression);
     } catch (const std::exception& error) {
         throw InputError(file.string(), std::string("cannot be written: ") + error.what());
     }
+}
 
-    TemporaryFile temporary(file);
-    std::ofstream output(temporary.path(), std::ios::binary);
-    output.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    output.close();
-    if (!output) throw InputError(file.string(), std::string("cannot be written: ") + std::strerror(errno));
-    temporary.rename();
+/// Where the value of a string attribute begins in a file; npos when it has none of the name.
+std::size_t value_position(const std::string& bytes, const std::string& attribute) {
+    const std::string start = attribute + '\0' + "string" + '\0';
+    const std::size_t found = bytes.find(start);
+    return found == std::string::npos ? found : found + start.size() + sizeof(std::uint32_t);  // its length is between
+}
+
+}  // namespace
+
+void write_exr(const std::filesystem::path& file, const Image& image, const Metadata& metadata,
+               ExrCompression compression) {
+    write_text_file(file, encode_for(file, image, metadata, compression));
+}
+
+void write_sealed_exr(const std::filesystem::path& file, const Image& image, const Metadata& metadata) {
+    Metadata sealed = metadata;
+    sealed[bytes_attribute] = std::string(bytes_digits, '0');
+    sealed[checksum_attribute] = std::string(checksum_digits, '0');
+    std::string bytes = encode_for(file, image, sealed, ExrCompression::Fast);
+    bytes.replace(value_position(bytes, bytes_attribute), bytes_digits, fmt::format("{:020}", bytes.size()));
+    bytes.replace(value_position(bytes, checksum_attribute), checksum_digits, hash_text(bytes));
+    write_text_file(file, bytes);
 }
 
 namespace {
@@ -309,6 +327,28 @@ Image read_exr(const std::filesystem::path& file, Metadata* metadata) {
 Metadata read_exr_metadata(const std::filesystem::path& file) {
     return read_checked(file,
                         [&] { return string_attributes(Imf::MultiPartInputFile(file.c_str(), 0, false).header(0)); });
+}
+
+Metadata read_sealed_metadata(const std::filesystem::path& file) {
+    Metadata metadata = read_exr_metadata(file);
+    const auto bytes = number_in<std::uintmax_t>(metadata[bytes_attribute]);
+    if (!bytes || metadata[checksum_attribute].size() != checksum_digits)
+        throw InputError(file.string(), "does not say how long it is and what its checksum is");
+    const std::uintmax_t size = std::filesystem::file_size(file);
+    if (size != *bytes)
+        throw InputError(file.string(), fmt::format("has {} bytes, and had {} when it was written", size, *bytes));
+    return metadata;
+}
+
+void require_seal(const std::filesystem::path& file) {
+    std::string bytes = read_text_file(file, std::numeric_limits<std::uintmax_t>::max());
+    const std::size_t position = value_position(bytes, checksum_attribute);
+    if (position != std::string::npos && position + checksum_digits <= bytes.size()) {
+        const std::string stored = bytes.substr(position, checksum_digits);
+        bytes.replace(position, checksum_digits, checksum_digits, '0');
+        if (stored == hash_text(bytes)) return;
+    }
+    throw InputError(file.string(), "is not what was written: its checksum is another");
 }
 
 }  // namespace photonlab

@@ -30,6 +30,17 @@ enum class ExrCompression {
 void write_exr(const std::filesystem::path& file, const Image& image, const Metadata& metadata = {},
                ExrCompression compression = ExrCompression::Fast);
 
+/// The same, for a file that is to be known again by itself: `photonlab.bytes` says how long it is, in 20 digits, and
+/// `photonlab.checksum` what hash (core/hash.h) its bytes have while the 32 digits of the checksum are zeros.
+void write_sealed_exr(const std::filesystem::path& file, const Image& image, const Metadata& metadata);
+
+/// What a sealed file's attributes say; throws InputError when it is no EXR, has no seal, or is longer or shorter than
+/// it says. Its pixels are not looked at.
+Metadata read_sealed_metadata(const std::filesystem::path& file);
+
+/// Throws InputError when a byte of a sealed file is not what was written.
+void require_seal(const std::filesystem::path& file);
+
 /// Reads an image. Layers are those named by `photonlab.layers`, in that order; in a file without it (another
 /// renderer's), R, G, B become one layer called "total". Channels may be float, half or uint, the data window
 /// anywhere; alpha and other channels are left out. `metadata` gets every string attribute.
