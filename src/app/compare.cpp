@@ -7,6 +7,7 @@
 
 #include "app/commands.h"
 #include "core/error.h"
+#include "core/messages.h"
 #include "experiment/reference.h"
 #include "image/exr.h"
 
@@ -21,7 +22,7 @@ struct CompareOptions {
 };
 
 void print(std::string_view name, const std::optional<double>& value) {
-    fmt::print("{:<16} {}\n", name, value ? fmt::format("{}", *value) : "not known: the reference has no halves");
+    print_output("{:<16} {}\n", name, value ? fmt::format("{}", *value) : "not known: the reference has no halves");
 }
 
 void compare_files(const CompareOptions& options) {
@@ -45,7 +46,7 @@ void compare_files(const CompareOptions& options) {
     print("bias", errors->bias);
     print("max_error", errors->max_error);
     print("reference_floor", errors->reference_floor);
-    fmt::print("{:<16} {}\n", "nonfinite", errors->nonfinite);
+    print_output("{:<16} {}\n", "nonfinite", errors->nonfinite);
 }
 
 }  // namespace

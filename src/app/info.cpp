@@ -10,6 +10,7 @@
 
 #include "app/commands.h"
 #include "app/options.h"
+#include "core/messages.h"
 #include "experiment/experiment_file.h"
 #include "integrators/density_estimate.h"
 #include "scene/loader.h"
@@ -41,8 +42,8 @@ void print_shapes(const Scene& scene) {
         spheres += std::holds_alternative<Sphere>(shape.geometry);
         disks += std::holds_alternative<Disk>(shape.geometry);
     }
-    fmt::print("shapes      {}: {} meshes of {} triangles in all, {} spheres, {} disks\n", scene.shapes.size(), meshes,
-               triangles, spheres, disks);
+    print_output("shapes      {}: {} meshes of {} triangles in all, {} spheres, {} disks\n", scene.shapes.size(),
+                 meshes, triangles, spheres, disks);
 }
 
 void print_materials(const Scene& scene) {
@@ -51,18 +52,18 @@ void print_materials(const Scene& scene) {
         const std::string kind(material_kind(material));
         ++kinds[kind + (material.two_sided ? ", two-sided" : "")];
     }
-    fmt::print("materials   {}\n", scene.materials.size());
-    for (const auto& [kind, count] : kinds) fmt::print("            {} {}\n", count, kind);
+    print_output("materials   {}\n", scene.materials.size());
+    for (const auto& [kind, count] : kinds) print_output("            {} {}\n", count, kind);
 }
 
 void print_emitters(const Scene& scene) {
-    fmt::print("emitters    {}\n", scene.emitters.size());
+    print_output("emitters    {}\n", scene.emitters.size());
     const double area_unit = scene.unit_length * scene.unit_length;
     for (const Emitter& emitter : scene.emitters) {
         const ColorD power = emitter.power * area_unit;
-        fmt::print("            {} light, power {:.6g} {:.6g} {:.6g}, chosen with probability {:.4g}\n",
-                   std::holds_alternative<AreaLight>(emitter.kind) ? "area" : "point", power.x, power.y, power.z,
-                   emitter.choice_probability);
+        print_output("            {} light, power {:.6g} {:.6g} {:.6g}, chosen with probability {:.4g}\n",
+                     std::holds_alternative<AreaLight>(emitter.kind) ? "area" : "point", power.x, power.y, power.z,
+                     emitter.choice_probability);
     }
 }
 
@@ -78,7 +79,7 @@ void print_narrow_gaps(const Scene& scene) {
     const NarrowGaps gaps = find_narrow_gaps(scene);
     if (!gaps.first) return;
     const VectorD position = VectorD(gaps.first->position) * scene.unit_length + scene.centre;
-    fmt::print(
+    print_output(
         "warning     surfaces are less than {:g} of the scene apart at {} of {} points tried, the first between shapes "
         "{} "
         "and {} at {:.6g} {:.6g} {:.6g}: light can pass between them or meet the wrong one\n",
@@ -93,27 +94,27 @@ void info(const InfoOptions& options) {
     const Camera& camera = scene.camera;
     const VectorD position = VectorD(camera.position) * scene.unit_length + scene.centre;
 
-    fmt::print("scene       {}\n", scene.name);
-    fmt::print("hash        {}\n", scene.hash);
+    print_output("scene       {}\n", scene.name);
+    print_output("hash        {}\n", scene.hash);
     print_shapes(scene);
     print_materials(scene);
     print_emitters(scene);
-    fmt::print("camera      at {:.6g} {:.6g} {:.6g}, {}x{} pixels, {:.4g} degrees wide\n", position.x, position.y,
-               position.z, camera.width, camera.height, 2.0 * std::atan(camera.right.length() / 2.0) * 180.0 / pi);
-    fmt::print("max depth   {}\n", scene.max_depth < 0 ? "unlimited" : std::to_string(scene.max_depth));
-    fmt::print("size        bounding radius {:.6g}, around {:.6g} {:.6g} {:.6g} (scene units)\n",
-               scene.bounding_radius * scene.unit_length, scene.centre.x, scene.centre.y, scene.centre.z);
+    print_output("camera      at {:.6g} {:.6g} {:.6g}, {}x{} pixels, {:.4g} degrees wide\n", position.x, position.y,
+                 position.z, camera.width, camera.height, 2.0 * std::atan(camera.right.length() / 2.0) * 180.0 / pi);
+    print_output("max depth   {}\n", scene.max_depth < 0 ? "unlimited" : std::to_string(scene.max_depth));
+    print_output("size        bounding radius {:.6g}, around {:.6g} {:.6g} {:.6g} (scene units)\n",
+                 scene.bounding_radius * scene.unit_length, scene.centre.x, scene.centre.y, scene.centre.z);
 
     const HitPoints hit_points = trace_hit_points(scene, 1, hardware_threads());
     const std::size_t count = hit_points.points.size();
-    fmt::print("hit points  {} at one sample a pixel\n", count);
+    print_output("hit points  {} at one sample a pixel\n", count);
     if (count > 0)
-        fmt::print("auto radius {:.6g} in the mean (scene units)\n", mean_automatic_radius(scene, hit_points));
-    fmt::print("photons     {} bytes each, one kind\n", sizeof(Photon));
-    for (const std::string& what : what_is_left_out(scene, hit_points)) fmt::print("left out    {}\n", what);
-    for (const std::string& note : scene.notes) fmt::print("note        {}\n", note);
+        print_output("auto radius {:.6g} in the mean (scene units)\n", mean_automatic_radius(scene, hit_points));
+    print_output("photons     {} bytes each, one kind\n", sizeof(Photon));
+    for (const std::string& what : what_is_left_out(scene, hit_points)) print_output("left out    {}\n", what);
+    for (const std::string& note : scene.notes) print_output("note        {}\n", note);
     print_narrow_gaps(scene);
-    for (const std::string& reason : why_images_are_plain(scene, hit_points)) fmt::print("warning     {}\n", reason);
+    for (const std::string& reason : why_images_are_plain(scene, hit_points)) print_output("warning     {}\n", reason);
 }
 
 }  // namespace

@@ -5,19 +5,20 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <exception>
-#include <filesystem>
+#include <new>
+#include <sstream>
 #include <string>
+#include <system_error>
+#include <vector>
 
+#include "app/command_line.h"
 #include "app/commands.h"
 #include "app/interruption.h"
 #include "core/error.h"
-#include "core/files.h"
+#include "core/messages.h"
 #include "experiment/version.h"
 
 namespace {
@@ -25,17 +26,11 @@ namespace {
 constexpr int bad_input = 2;
 constexpr int internal_error = 1;
 
-/// One line that any terminal can show, however hostile the file that a message quotes: control characters become
-/// spaces, what is no UTF-8 question marks, and of more than 2000 bytes the middle is left out.
+/// One line, whatever a message quotes: of more than 2000 bytes the middle is left out.
 std::string one_line(std::string text) {
     constexpr std::size_t longest = 2000;
     if (text.size() > longest) text.replace(longest / 2, text.size() - longest, " ... ");
-    std::replace_if(
-        text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
-    // Control characters of two bytes, U+0080 to U+009F.
-    for (std::size_t i = 0; i + 1 < text.size(); ++i)
-        if (text[i] == '\xc2' && static_cast<unsigned char>(text[i + 1]) < 0xa0) text.replace(i, 2, "  ");
-    for (std::size_t at = 0; (at = photonlab::find_no_text(text)) != std::string::npos;) text[at] = '?';
+    std::replace(text.begin(), text.end(), '\n', ' ');
     return text;
 }
 
@@ -49,20 +44,19 @@ void start_with_passive_waiting(char** argv) {
 }
 
 int report(const std::string& message, int code) {
-    fmt::print(stderr, "photonlab: {}\n", one_line(message));
+    photonlab::print_message("photonlab: {}\n", one_line(message));
     return code;
 }
 
-int run_program(int argc, char** argv) {
+void add_commands(CLI::App& app) {
     using namespace photonlab;
-    CLI::App app("photonlab: a research harness for photon mapping", "photonlab");
     const ProgramVersion program = program_version();
     app.set_version_flag(
         "--version", fmt::format("photonlab {} (commit {}; {})", program.version, program.commit, program.compiler));
     app.require_subcommand(1);
     app.get_formatter()->column_width(34);
     app.footer(
-        "photonlab COMMAND --help says more, with an example.\n\n"
+        "photonlab help COMMAND says more, with an example.\n\n"
         "Exit codes: 0 done; 1 an error of the program's own; 2 input that cannot be used, or files that cannot be\n"
         "written; 3 ended by SIGINT or SIGTERM after the pass it was at, to be continued (a second signal ends at "
         "once).");
@@ -71,31 +65,52 @@ int run_program(int argc, char** argv) {
     add_reference_command(app);
     add_compare_command(app);
     add_info_command(app);
+}
+
+/// Reads the command line and does what it says; its messages are the library's own.
+void run_command(CLI::App& app, std::vector<std::string> words) {
+    using namespace photonlab;
+    require_command(app, words);
+    std::vector<std::string> last_first(words.rbegin(), words.rend());  // as CLI11 takes them
     try {
-        app.parse(argc, argv);
+        app.parse(last_first);
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-        return report(error.what(), bad_input);
+        if (error.get_exit_code() != 0) {
+            require_known_options(app, words[0]);
+            throw InputError(error.what());
+        }
+        std::ostringstream text;  // of --help and --version
+        app.exit(error, text, text);
+        print_output("{}", text.str());
     }
-    // What was printed may still be on its way to a full disk.
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-        return report("standard output: cannot be written: " + std::string(std::strerror(errno)), bad_input);
-    return 0;
+}
+
+int run_program(int argc, char** argv) {
+    using namespace photonlab;
+    CLI::App app("photonlab: a research harness for photon mapping", "photonlab");
+    add_commands(app);
+    run_command(app, {argv + std::min(argc, 1), argv + argc});
+    const std::string failure = output_failure();
+    return failure.empty() ? 0 : report("standard output: cannot be written: " + failure, bad_input);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+    photonlab::occupy_standard_streams();
     start_with_passive_waiting(argv);
     std::signal(SIGXFSZ, SIG_IGN);  // a file that grows beyond a quota is an error of writing like any other
+    std::signal(SIGPIPE, SIG_IGN);  // and so is a pipe whose reader has left
     try {
         return run_program(argc, argv);
     } catch (const photonlab::InputError& error) {
         return report(error.what(), bad_input);
     } catch (const photonlab::Interrupted& interruption) {
         return report(interruption.what(), photonlab::interrupted_exit_code);
-    } catch (const std::filesystem::filesystem_error& error) {
+    } catch (const std::system_error& error) {  // of files and threads
         return report(error.what(), bad_input);
+    } catch (const std::bad_alloc&) {
+        return report("the system gives no more memory", bad_input);
     } catch (const std::exception& error) {
         return report(std::string("internal error: ") + error.what(), internal_error);
     }

@@ -8,6 +8,7 @@
 #include "app/commands.h"
 #include "app/interruption.h"
 #include "app/options.h"
+#include "core/messages.h"
 #include "experiment/experiment_file.h"
 #include "experiment/progress.h"
 #include "experiment/reference_store.h"
@@ -41,12 +42,12 @@ void make_reference(ReferenceOptions options) {
                                             options.settings.seconds_between_saves));
         });
     progress.clear();
-    fmt::print("{}: {} samples a half and sample position, {}x{}, {} so far\n", options.output.string(),
-               json.at("samples_per_half").get<std::uint64_t>(), json.at("width").get<int>(),
-               json.at("height").get<int>(), describe_duration(json.at("seconds").get<double>()));
+    print_output("{}: {} samples a half and sample position, {}x{}, {} so far\n", options.output.string(),
+                 json.at("samples_per_half").get<std::uint64_t>(), json.at("width").get<int>(),
+                 json.at("height").get<int>(), describe_duration(json.at("seconds").get<double>()));
     for (const auto& [component, floor] : json.at("floor_mse").items())
-        if (floor.is_number()) fmt::print("noise floor (MSE) of {:<9} {:.6g}\n", component, floor.get<double>());
-    fmt::print("wrote {}\n", (options.output / "reference.json").string());
+        if (floor.is_number()) print_output("noise floor (MSE) of {:<9} {:.6g}\n", component, floor.get<double>());
+    print_output("wrote {}\n", (options.output / "reference.json").string());
     if (samples_left > 0)
         throw Interrupted(fmt::format("interrupted, and saved; --samples {} adds the rest", samples_left));
 }

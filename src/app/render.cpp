@@ -15,6 +15,7 @@
 #include "core/file_lock.h"
 #include "core/files.h"
 #include "core/hash.h"
+#include "core/messages.h"
 #include "experiment/checkpoint.h"
 #include "experiment/experiment_file.h"
 #include "experiment/memory.h"
@@ -79,24 +80,24 @@ std::filesystem::path snapshot_file(const std::filesystem::path& output, std::ui
 
 void print_summary(const RunState& state, const RunSettings& settings, const Scene& scene, std::size_t hit_points,
                    const std::optional<ErrorMetrics>& errors) {
-    fmt::print("{}: {} passes of {}, {} hit points, seed {}\n", scene.name, state.pass, settings.method.integrator,
-               hit_points, settings.seed);
-    fmt::print("time        {} (CPU {}): trace {}, build {}, gather {}, direct light {}\n",
-               describe_duration(state.times.total()), describe_duration(state.times.cpu_total()),
-               describe_duration(state.times.of(Stage::Trace)), describe_duration(state.times.of(Stage::Build)),
-               describe_duration(state.times.of(Stage::Gather)), describe_duration(state.times.of(Stage::Direct)));
+    print_output("{}: {} passes of {}, {} hit points, seed {}\n", scene.name, state.pass, settings.method.integrator,
+                 hit_points, settings.seed);
+    print_output("time        {} (CPU {}): trace {}, build {}, gather {}, direct light {}\n",
+                 describe_duration(state.times.total()), describe_duration(state.times.cpu_total()),
+                 describe_duration(state.times.of(Stage::Trace)), describe_duration(state.times.of(Stage::Build)),
+                 describe_duration(state.times.of(Stage::Gather)), describe_duration(state.times.of(Stage::Direct)));
     if (state.paths_emitted > 0)
-        fmt::print("photons     {} stored of {} paths, {} gathered\n", state.photons_stored, state.paths_emitted,
-                   state.report.photons_gathered);
+        print_output("photons     {} stored of {} paths, {} gathered\n", state.photons_stored, state.paths_emitted,
+                     state.report.photons_gathered);
     if (state.report.radius_mean && state.initial_radius)
-        fmt::print("radius      {:.6g} at first, {:.6g} at the end (mean over hit points, scene units)\n",
-                   *state.initial_radius, *state.report.radius_mean);
-    if (state.paths_cut > 0) fmt::print("cut         {} photon paths ended by the cap on edges\n", state.paths_cut);
+        print_output("radius      {:.6g} at first, {:.6g} at the end (mean over hit points, scene units)\n",
+                     *state.initial_radius, *state.report.radius_mean);
+    if (state.paths_cut > 0) print_output("cut         {} photon paths ended by the cap on edges\n", state.paths_cut);
     if (errors) {
-        fmt::print("rmse        {:.6g}\n", errors->rmse);
+        print_output("rmse        {:.6g}\n", errors->rmse);
         if (errors->mse_unbiased)
-            fmt::print("mse         {:.6g}; without the reference's noise {:.6g}\n", errors->mse,
-                       *errors->mse_unbiased);
+            print_output("mse         {:.6g}; without the reference's noise {:.6g}\n", errors->mse,
+                         *errors->mse_unbiased);
     }
 }
 
@@ -185,7 +186,7 @@ void render(const RenderOptions& options) {
 
     const MemoryEstimate memory = estimate_memory(scene, options.samples_per_pixel, {settings}, 0);
     require_memory(options.scene.string(), memory);
-    fmt::print("memory      {}\n", describe(memory));
+    print_output("memory      {}\n", describe(memory));
 
     const HitPoints hit_points =
         trace_hit_points(scene, options.samples_per_pixel, options.threads, settings.method.branch_cutoff);
@@ -215,7 +216,7 @@ void render(const RenderOptions& options) {
     if (options.resume)
         continuation.restore = [&](std::size_t, const StateExchange& method) {
             if (!load(checkpoint, state_of(method)))
-                fmt::print(stderr, "photonlab: {} is not there: beginning at pass 1\n", options.checkpoint);
+                print_message("photonlab: {} is not there: beginning at pass 1\n", options.checkpoint);
         };
     CheckpointClock clock(options.checkpoint_seconds);
     continuation.goes_on = [&](std::uint64_t pass, const std::vector<StateExchange>& methods) {
@@ -247,7 +248,10 @@ void render(const RenderOptions& options) {
             if (!options.png.empty()) write_png(options.png, image.width, image.height, total(image));
             if (reference) errors = judge(image, *reference, total_component, photons_carry_direct(settings.method));
         },
-        [&](std::uint64_t pass) { progress.show(pass, fmt::format("pass {} of {}", pass, options.passes)); },
+        [&](std::uint64_t pass, bool is_new) {
+            if (!is_new) progress.skip(pass);
+            progress.show(pass, fmt::format("pass {} of {}", pass, options.passes));
+        },
         [](std::size_t, std::uint64_t, const Integrator&) {}, continuation)[0];
     progress.clear();
     if (last.pass < options.passes)
@@ -258,12 +262,12 @@ void render(const RenderOptions& options) {
     if (!options.checkpoint.empty()) discard(checkpoint);
 
     print_summary(shown, settings, scene, hit_points.points.size(), errors);
-    for (const std::string& reason : why_images_are_plain(scene, hit_points)) fmt::print("note        {}\n", reason);
-    fmt::print("wrote       {}\n", options.output.string());
+    for (const std::string& reason : why_images_are_plain(scene, hit_points)) print_output("note        {}\n", reason);
+    print_output("wrote       {}\n", options.output.string());
     for (const std::string& file : {options.png, options.csv})
-        if (!file.empty()) fmt::print("wrote       {}\n", file);
+        if (!file.empty()) print_output("wrote       {}\n", file);
     for (const std::uint64_t pass : snapshots)
-        fmt::print("wrote       {}\n", snapshot_file(options.output, pass).string());
+        print_output("wrote       {}\n", snapshot_file(options.output, pass).string());
 }
 
 }  // namespace

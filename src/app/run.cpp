@@ -8,6 +8,7 @@
 #include "app/commands.h"
 #include "app/interruption.h"
 #include "app/options.h"
+#include "core/messages.h"
 #include "experiment/experiment_file.h"
 #include "experiment/experiment_runs.h"
 
@@ -32,14 +33,14 @@ void run(const RunOptions& options) {
     const auto only = options.only.empty() ? std::nullopt : std::optional(options.only);
     const PreparedExperiment prepared = prepare_experiment(experiment, results, only);
     if (options.list) {
-        fmt::print("{}", list_runs(experiment, prepared));
+        print_output("{}", list_runs(experiment, prepared));
         return;
     }
     listen_for_interruptions();
     const ExperimentOutcome outcome = run_experiment(experiment, prepared, results, options.continuation);
-    fmt::print("{} runs made, {} were finished already\n", outcome.ran, outcome.skipped);
-    fmt::print("wrote {}: {} of {} runs\n", outcome.records.string(), outcome.merged, experiment.runs.size());
-    fmt::print("wrote {}: run.json, iterations.csv and snapshots of each\n", (results / "runs").string());
+    print_output("{} runs made, {} were finished already\n", outcome.ran, outcome.skipped);
+    print_output("wrote {}: {} of {} runs\n", outcome.records.string(), outcome.merged, experiment.runs.size());
+    print_output("wrote {}: run.json, iterations.csv and snapshots of each\n", (results / "runs").string());
     if (!outcome.left_out.empty())
         throw InputError(
             fmt::format("{}; {} finished runs like this one are not in {}, and are made again by the same "

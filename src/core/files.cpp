@@ -41,27 +41,6 @@ std::string read_text_file(const std::filesystem::path& file, std::uintmax_t lar
     return std::move(text).str();
 }
 
-std::size_t find_no_text(std::string_view bytes) {
-    for (std::size_t i = 0; i < bytes.size();) {
-        const auto byte = [&](std::size_t at) -> unsigned {
-            return at < bytes.size() ? static_cast<unsigned char>(bytes[at]) : 0u;
-        };
-        const unsigned first = byte(i);
-        const std::size_t length = first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
-        if (first == 0 || length == 0 || first > 0xf4) return i;
-        unsigned code = length == 1 ? first : first & (0x7fu >> length);
-        for (std::size_t k = 1; k < length; ++k) {
-            if ((byte(i + k) & 0xc0) != 0x80) return i;
-            code = code << 6 | (byte(i + k) & 0x3f);
-        }
-        const bool is_too_long = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
-        const bool is_surrogate = code >= 0xd800 && code < 0xe000;
-        if (is_too_long || is_surrogate || code > 0x10ffff) return i;
-        i += length;
-    }
-    return std::string_view::npos;
-}
-
 void write_text_file(const std::filesystem::path& file, std::string_view text) {
     TemporaryFile temporary(file);
     std::ofstream stream(temporary.path(), std::ios::binary | std::ios::trunc);

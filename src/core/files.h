@@ -19,9 +19,6 @@ void require_ordinary_file(const std::filesystem::path& file);
 /// Throws InputError when it is no ordinary file, cannot be read, or has more than `largest` bytes.
 std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest = std::uintmax_t{1} << 31);
 
-/// Position of the first byte that is not part of UTF-8 text, which a NUL is not either here; npos when all is.
-std::size_t find_no_text(std::string_view bytes);
-
 /// Replaces the file by `text` at once. Throws InputError when it cannot be written.
 void write_text_file(const std::filesystem::path& file, std::string_view text);
 

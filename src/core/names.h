@@ -3,11 +3,12 @@
 
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/error.h"
+#include "core/nearest.h"
 
 namespace photonlab {
 
@@ -27,13 +28,12 @@ std::string name_of(Enumeration value) {
     return "?";
 }
 
-/// Every spelling, separated by ", ".
+/// Every spelling.
 template <typename Enumeration>
-std::string all_names() {
-    std::string list;
-    for (const auto& choice : choice_names(Enumeration{}))
-        list += (list.empty() ? "" : ", ") + std::string(choice.name);
-    return list;
+std::vector<std::string_view> all_names() {
+    std::vector<std::string_view> names;
+    for (const auto& choice : choice_names(Enumeration{})) names.push_back(choice.name);
+    return names;
 }
 
 /// The choice spelled `name`; `what` names the setting in the InputError that anything else raises.
@@ -41,8 +41,7 @@ template <typename Enumeration>
 Enumeration parse_choice(std::string_view what, std::string_view name) {
     for (const auto& choice : choice_names(Enumeration{}))
         if (choice.name == name) return choice.value;
-    throw InputError("unknown " + std::string(what) + " \"" + std::string(name) +
-                     "\"; known here: " + all_names<Enumeration>());
+    throw InputError(unknown_name(what, name, all_names<Enumeration>()));
 }
 
 }  // namespace photonlab

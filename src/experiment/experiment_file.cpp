@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/nearest.h"
 #include "experiment/toml.h"
 #include "integrators/registry.h"
 
@@ -94,10 +95,7 @@ private:
     void require_known(const toml::table& table, const std::vector<std::string_view>& known) const {
         for (const auto& [key, node] : table) {
             if (std::find(known.begin(), known.end(), std::string_view(key.str())) != known.end()) continue;
-            std::string list;
-            for (const std::string_view name : known) list += (list.empty() ? "" : ", ") + std::string(name);
-            throw InputError(place(node),
-                             fmt::format("unknown key \"{}\"; known here: {}", std::string_view(key.str()), list));
+            throw InputError(place(node), unknown_name("key", key.str(), known));
         }
     }
 
@@ -178,9 +176,8 @@ private:
                                                  plan.passes, most_records));
                 for (std::uint64_t pass = 1; pass <= plan.passes; ++pass) recorded.push_back(pass);
             } else if (rule != "powers-of-two") {
-                throw InputError(
-                    place(*record),
-                    fmt::format("unknown record \"{}\"; known here: all, powers-of-two, a list of passes", rule));
+                throw InputError(place(*record),
+                                 unknown_name("record", rule, {"all", "powers-of-two", "a list of passes"}));
             }
         } else if (record) {
             recorded = integers(*record, "record", 0, static_cast<std::int64_t>(most_written_passes_));

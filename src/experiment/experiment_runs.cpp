@@ -9,6 +9,7 @@
 
 #include "core/file_lock.h"
 #include "core/files.h"
+#include "core/messages.h"
 #include "experiment/merged_records.h"
 #include "experiment/progress.h"
 #include "experiment/reference.h"
@@ -83,7 +84,7 @@ public:
         : experiment_(experiment), prepared_(prepared) {}
 
     /// Says of a new scene why its images are plain, if they are.
-    void move_to(const PreparedRun& run, const Progress& progress) {
+    void move_to(const PreparedRun& run, Progress& progress) {
         const std::size_t scene_index = run.run->scene;
         const SceneEntry& entry = experiment_.scenes[scene_index];
         const Scene& scene = *prepared_.scenes[scene_index];
@@ -138,7 +139,7 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
                   "what this experiment still writes (snapshots, sums over seeds, checkpoints)");
     if (const auto largest = largest_memory(experiment, prepared, groups)) {
         require_memory(largest->first_run, largest->estimate);
-        fmt::print(stderr, "memory: {}\n", describe(largest->estimate));
+        print_message("memory: {}\n", describe(largest->estimate));
     }
     for (const PreparedRun& ready : prepared.runs) outcome.skipped += ready.finished;
     std::uint64_t passes = 0;
@@ -165,6 +166,7 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
             locked.runs.erase(first_made, locked.runs.end());
             if (locked.runs.empty()) {
                 if (locked.of_others.empty()) passes_before += group[0]->settings.passes;
+                progress.skip(passes_before);
                 continue;
             }
 
@@ -177,7 +179,10 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
             const GroupOutcome made =
                 run_group({experiment, *prepared.scenes[first.run->scene], surroundings.hit_points(),
                            surroundings.reference(), results, locked.runs},
-                          options, [&](std::uint64_t pass) { progress.show(passes_before + pass, counted); });
+                          options, [&](std::uint64_t pass, bool is_new) {
+                              if (!is_new) progress.skip(passes_before + pass);
+                              progress.show(passes_before + pass, counted);
+                          });
             outcome.is_interrupted = !made.is_finished;
             if (outcome.is_interrupted) break;
             if (locked.of_others.empty()) passes_before += first.settings.passes;
@@ -186,6 +191,7 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
         }
         groups = std::move(of_others);
         if (groups.empty() || is_anything_done || outcome.is_interrupted) continue;
+        progress.skip(passes_before);
         progress.show(passes_before, "waiting for runs that another process is making");
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
         outcome.is_interrupted = options.is_interrupted();

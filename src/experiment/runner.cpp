@@ -230,6 +230,7 @@ std::vector<RunState> run_methods(const Scene& scene, const HitPoints& hit_point
 
     end_pass(0);
     for (std::uint64_t pass = 1; pass <= common.passes; ++pass) {
+        const bool is_new = is_any([&](const RunningMethod& method) { return method.next_pass == pass; });
         const bool needs_pass_map = is_any([&](const RunningMethod& method) {
             return method.needs == PhotonNeed::PassMap && method.next_pass == pass;
         });
@@ -263,7 +264,7 @@ std::vector<RunState> run_methods(const Scene& scene, const HitPoints& hit_point
         }
         photons.end_pass();
         end_pass(pass);
-        on_pass(pass);
+        on_pass(pass, is_new);
         if (continuation.goes_on && !continuation.goes_on(pass, states)) break;
     }
     std::vector<RunState> last;

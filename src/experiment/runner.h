@@ -81,7 +81,8 @@ struct RunState {
 
 /// `method` is the index into the settings of run_methods().
 using EstimateListener = std::function<void(std::size_t method, const RunState&, const Image&)>;
-using PassListener = std::function<void(std::uint64_t pass)>;
+/// `is_new` is false for a pass that all methods had behind them when they were restored.
+using PassListener = std::function<void(std::uint64_t pass, bool is_new)>;
 /// Told whenever a method has gathered anew: ppm after every pass, photonmapper at every estimate.
 using GatherListener = std::function<void(std::size_t method, std::uint64_t pass, const Integrator&)>;
 
@@ -104,7 +105,7 @@ bool can_run_together(const RunSettings& a, const RunSettings& b);
 /// photons of passes that photonmapper has behind it are traced again, for nobody's account.
 std::vector<RunState> run_methods(
     const Scene& scene, const HitPoints& hit_points, const std::vector<RunSettings>& settings,
-    const EstimateListener& on_estimate, const PassListener& on_pass = [](std::uint64_t) {},
+    const EstimateListener& on_estimate, const PassListener& on_pass = [](std::uint64_t, bool) {},
     const GatherListener& on_gather = [](std::size_t, std::uint64_t, const Integrator&) {},
     const Continuation& continuation = {});
 

@@ -1,6 +1,7 @@
 #include "experiment/settings_io.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <limits>
@@ -89,7 +90,7 @@ template <typename Enumeration>
 requires std::is_enum_v<Enumeration>
 void read_value(std::string_view name, Enumeration& target, const SettingValue& value) {
     const auto* text = std::get_if<std::string>(&value);
-    if (!text) refuse(name, "one of " + all_names<Enumeration>(), value);
+    if (!text) refuse(name, fmt::format("one of {}", fmt::join(all_names<Enumeration>(), ", ")), value);
     target = parse_choice<Enumeration>(name, *text);
 }
 

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
-
+#include "core/nearest.h"
 #include "integrators/density_estimate.h"
 #include "integrators/path.h"
 #include "integrators/photonmapper.h"
@@ -32,12 +31,12 @@ const std::vector<IntegratorKind>& integrator_kinds() {
 }
 
 const IntegratorKind& find_integrator_kind(std::string_view name) {
-    std::string known;
+    std::vector<std::string_view> known;
     for (const IntegratorKind& kind : integrator_kinds()) {
         if (kind.name == name) return kind;
-        known += (known.empty() ? "" : ", ") + std::string(kind.name);
+        known.push_back(kind.name);
     }
-    throw InputError("unknown integrator \"" + std::string(name) + "\"; known here: " + known);
+    throw InputError(unknown_name("integrator", name, known));
 }
 
 bool uses_setting(const MethodSettings& settings, std::string_view field) {

@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "core/number_in.h"
+#include "core/text.h"
 
 namespace photonlab {
 
