@@ -65,6 +65,7 @@ void add_commands(CLI::App& app) {
     add_reference_command(app);
     add_compare_command(app);
     add_info_command(app);
+    add_verify_command(app);
 }
 
 /// Reads the command line and does what it says; its messages are the library's own.

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "core/error.h"
+#include "core/files.h"
 #include "core/temporary_file.h"
 
 namespace photonlab {
@@ -94,6 +95,12 @@ bool load(const Checkpoint& checkpoint, const StateExchange& state) {
 
 bool is_usable(const Checkpoint& checkpoint) {
     return load(checkpoint, {});
+}
+
+void require_whole_checkpoint(const std::filesystem::path& file) {
+    require_ordinary_file(file);
+    std::ifstream stream(file, std::ios::binary);
+    checked_size(stream, file.string(), {file, "", "remove it, or begin anew beside it with --fresh"});
 }
 
 void save(const Checkpoint& checkpoint, const StateExchange& state) {

@@ -33,6 +33,9 @@ bool load(const Checkpoint& checkpoint, const StateExchange& state);
 /// load() without reading the state itself.
 bool is_usable(const Checkpoint& checkpoint);
 
+/// Throws InputError unless it is a checkpoint, whosever, as it was written.
+void require_whole_checkpoint(const std::filesystem::path& file);
+
 /// What load() does with the file's content; `place` is its name in messages.
 void load_checkpoint(std::istream& stream, const std::string& place, const Checkpoint& checkpoint,
                      const StateExchange& state);

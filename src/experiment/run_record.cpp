@@ -124,6 +124,9 @@ std::optional<FinishedRun> read_finished_run(const std::filesystem::path& folder
         run.seed = json->at("seed").get<std::uint64_t>();
         if (const Json& ensemble = json->at("ensemble"); !ensemble.is_null())
             run.ensemble = {ensemble.at("folder").get<std::string>(), ensemble.at("key").get<std::string>()};
+        if (const Json& reference = json->at("reference"); !reference.is_null())
+            run.reference = {reference.at("path").get<std::string>(), reference.at("key").get<std::string>(),
+                             json->at("working_directory").get<std::string>()};
         for (const auto& [name, value] : json->at("files").items()) {
             const std::optional<FileStamp> stamp = stamp_from(value);
             if (!stamp) return std::nullopt;

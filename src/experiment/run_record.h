@@ -57,6 +57,13 @@ struct RunRecord {
 Json run_json(const RunRecord& record, const Recorder& recorder, const RunState& last, const Scene& scene,
               const HitPoints& hit_points, const Reference* reference);
 
+/// What a run was judged by.
+struct ReferenceOfRun {
+    std::string path;  ///< from the folder that the program was started in
+    std::string key;
+    std::string working_directory;
+};
+
 /// What run.json says of a finished run.
 struct FinishedRun {
     std::string experiment;
@@ -64,6 +71,7 @@ struct FinishedRun {
     std::string key;
     std::uint64_t seed = 0;
     std::optional<SumsOfRun> ensemble;
+    std::optional<ReferenceOfRun> reference;
     std::map<std::string, FileStamp> files;
 };
 

@@ -53,7 +53,7 @@ TEST_F(CommandLine, EmptyWordsAreRefusedByTheirOption) {
         if (option == "-o") continue;
         EXPECT_EQ(refusal_of({"render", scene, option + "="}), option + ": expected a value, it is empty\n");
     }
-    for (const std::string command : {"render", "run", "reference", "compare", "info"})
+    for (const std::string command : {"render", "run", "reference", "compare", "info", "verify"})
         EXPECT_EQ(refusal_of({command, ""}), "argument 2: expected a value, it is empty\n");
     EXPECT_EQ(refusal_of({"run", "a.toml", "--only", ""}), "--only: expected a value, it is empty\n");
     EXPECT_EQ(refusal_of({"compare", scene, scene, "--component", ""}), "--component: expected a value, it is empty\n");
@@ -63,7 +63,7 @@ TEST_F(CommandLine, EmptyWordsAreRefusedByTheirOption) {
 TEST_F(CommandLine, HelpIsACommandToo) {
     EXPECT_EQ(output_of({"help"}), output_of({"--help"}));
     EXPECT_NE(output_of({"help"}).find("Exit codes: 0 done;"), std::string::npos);
-    for (const std::string command : {"render", "run", "reference", "compare", "info"}) {
+    for (const std::string command : {"render", "run", "reference", "compare", "info", "verify"}) {
         EXPECT_EQ(output_of({"help", command}), output_of({command, "--help"}));
         EXPECT_NE(output_of({"help", command}).find("Usage: photonlab " + command), std::string::npos);
     }
