@@ -7,13 +7,16 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <limits>
+#include <set>
 
 #include "core/error.h"
 #include "core/hash.h"
 #include "scene/material_reader.h"
 #include "scene/properties.h"
+#include "scene/shape_reader.h"
 #include "scene/transform.h"
 #include "scene/xml_reader.h"
 
@@ -26,19 +29,25 @@ public:
     explicit Loader(SceneDescription& scene, std::string& bytes_read) : scene_(scene), bytes_read_(bytes_read) {}
 
     void load(const XmlElement& root) {
-        collect_ids(root);
+        look_through(root);
+        for (const XmlElement& element : root.children)
+            if (is_for_shapes(element)) lights_without_shape_.insert(&element);
         bool has_sensor = false;
+        bool has_integrator = false;
         for (const XmlElement& element : root.children) {
             if (element.tag == "bsdf") {
                 material_index(element);
             } else if (element.tag == "shape") {
                 add_shape(element);
             } else if (element.tag == "emitter") {
-                add_point_light(element);
+                if (!is_for_shapes(element)) add_point_light(element);
             } else if (element.tag == "integrator") {
                 read_integrator(element);
-            } else if (element.tag == "texture") {
+                has_integrator = true;
+            } else if (element.tag == "texture" || element.tag == "alias") {
                 continue;  // read where a material names it
+            } else if (element.tag == "path") {
+                note(fmt::format("{}: path: there is no folder \"{}\"", element.place, element.attribute("value")));
             } else if (element.tag == "sensor") {
                 if (has_sensor) {
                     note("more than one sensor: the first is used");
@@ -48,12 +57,16 @@ public:
                 has_sensor = true;
             } else {
                 throw InputError(element.place,
-                                 fmt::format("unknown element <{}> in <scene>; known here: bsdf, default, "
-                                             "emitter, include, integrator, sensor, shape, texture",
+                                 fmt::format("unknown element <{}> in <scene>; known here: alias, bsdf, default, "
+                                             "emitter, include, integrator, path, sensor, shape, texture",
                                              element.tag));
             }
         }
         if (!has_sensor) throw InputError(root.place, "expected a <sensor type=\"perspective\"> in the scene");
+        if (!has_integrator && root.family() == MitsubaFamily::Version06)
+            note("no integrator: Mitsuba 0.6 would render direct light alone, here max_depth is unlimited");
+        if (!lights_without_shape_.empty())
+            throw InputError((*lights_without_shape_.begin())->place, "area: no shape names this light by its id");
     }
 
 private:
@@ -67,15 +80,27 @@ private:
             scene_.notes.push_back(sentence);
     }
 
-    void collect_ids(const XmlElement& element) {
-        const std::string id = element.attribute("id");
-        if (!id.empty() && element.tag != "ref") {
-            const auto [earlier, is_new] = by_id_.emplace(id, &element);
-            if (!is_new)
+    /// Collects what has an id. An alias is another id of what stands before it.
+    void look_through(const XmlElement& element) {
+        if (element.tag == "alias") {
+            const auto found = by_id_.find(element.require("id"));
+            if (found == by_id_.end())
                 throw InputError(element.place,
-                                 fmt::format("id \"{}\" stands already at {}", id, earlier->second->place));
+                                 fmt::format("alias: nothing before it has the id \"{}\"", element.attribute("id")));
+            add_id(element, element.require("as"), *found->second);
+        } else if (element.tag != "ref" && !element.attribute("id").empty()) {
+            add_id(element, element.attribute("id"), element);
+        } else if (lacks_up(element)) {
+            note(fmt::format("{}: lookat without an up: turned about the view as Mitsuba {} does", element.place,
+                             element.family() == MitsubaFamily::Version06 ? "0.6" : "3"));
         }
-        for (const XmlElement& child : element.children) collect_ids(child);
+        for (const XmlElement& child : element.children) look_through(child);
+    }
+
+    void add_id(const XmlElement& where, const std::string& id, const XmlElement& element) {
+        const auto [earlier, is_new] = by_id_.emplace(id, &element);
+        if (!is_new)
+            throw InputError(where.place, fmt::format("id \"{}\" stands already at {}", id, earlier->second->place));
     }
 
     /// The plugin itself, or the one that a <ref> names.
@@ -104,6 +129,7 @@ private:
                       .note = [this](const std::string& sentence) { note(sentence); }});
         const std::string id = element.attribute("id");
         material.id = id.empty() ? element.attribute("type") : id;
+        material.place = element.place;
         scene_.materials.push_back(std::move(material));
         return materials_[&element] = scene_.materials.size() - 1;
     }
@@ -112,34 +138,14 @@ private:
     // Shapes
 
     void add_shape(const XmlElement& element) {
-        const std::string& type = element.require("type");
         Properties properties(element);
-        const Matrix to_world = properties.transform("to_world").value_or(Matrix());
-        const bool flip_normals = properties.boolean("flip_normals").value_or(false);
-
         ShapeDescription shape;
         shape.place = element.place;
-        if (type == "obj")
-            shape.geometry = place_mesh(read_obj(element, properties), to_world, flip_normals);
-        else if (type == "rectangle")
-            shape.geometry = place_mesh(rectangle(), to_world, flip_normals);
-        else if (type == "cube")
-            shape.geometry = place_mesh(cube(), to_world, flip_normals);
-        else if (type == "sphere")
-            shape.geometry = read_sphere(element, properties, to_world, flip_normals);
-        else if (type == "disk")
-            shape.geometry =
-                DiskDescription{.centre = transform_point(to_world, VectorD(0.0)),
-                                .normal = transform_normal(to_world, {0.0, 0.0, flip_normals ? -1.0 : 1.0}),
-                                .radius = uniform_scale(to_world, 2, element.place)};
-        else
-            fail_unknown(element, "cube, disk, obj, rectangle, sphere");
-        properties.require_all_known();
-
         const XmlElement* bsdf = nullptr;
         for (const XmlElement* object : properties.objects()) {
             const XmlElement& plugin = resolve(*object);
             if (plugin.tag == "bsdf") {
+                require_for_whole_shape(element, *object);
                 if (bsdf) throw InputError(object->place, "expected one bsdf in a shape, got a second");
                 bsdf = &plugin;
             } else if (plugin.tag == "emitter") {
@@ -150,83 +156,36 @@ private:
                                  fmt::format("unexpected <{}> in a shape; known here: bsdf, emitter", plugin.tag));
             }
         }
-        shape.material = bsdf ? material_index(*bsdf) : default_material();
+        shape.material = bsdf ? material_index(*bsdf) : default_material(shape.radiance.has_value());
+        shape.geometry = read_geometry(element, properties,
+                                       {.has_bsdf = bsdf != nullptr,
+                                        .has_texture = scene_.materials[shape.material].texture != nullptr,
+                                        .bytes_read = bytes_read_,
+                                        .note = [this](const std::string& sentence) { note(sentence); }});
+        properties.require_all_known();
         scene_.shapes.push_back(std::move(shape));
     }
 
-    /// What Mitsuba gives a shape without a bsdf.
-    std::size_t default_material() {
-        if (!default_material_) {
-            scene_.materials.push_back({.id = "default", .bsdf = Diffuse{}, .two_sided = false});
-            default_material_ = scene_.materials.size() - 1;
+    /// 0.6 gives an OBJ file's parts the bsdfs that bear the names of their materials there.
+    static void require_for_whole_shape(const XmlElement& shape, const XmlElement& object) {
+        const std::string name = object.attribute("name");
+        if (!name.empty() && shape.family() == MitsubaFamily::Version06 && shape.attribute("type") == "obj")
+            throw InputError(object.place,
+                             fmt::format("obj: in version 0.6 a bsdf called \"{}\" is for the parts of that material "
+                                         "alone, which are not told apart here; without a name it is for all",
+                                         name));
+    }
+
+    /// What Mitsuba gives a shape without a bsdf: grey, or black to one that emits.
+    std::size_t default_material(bool emits) {
+        std::optional<std::size_t>& index = emits ? default_of_lights_ : default_material_;
+        if (!index) {
+            index = scene_.materials.size();
+            scene_.materials.push_back({.id = emits ? "default of lights" : "default",
+                                        .bsdf = Diffuse{Color(emits ? 0.0f : 0.5f)},
+                                        .two_sided = false});
         }
-        return *default_material_;
-    }
-
-    MeshDescription read_obj(const XmlElement& element, Properties& properties) {
-        const auto filename = properties.text("filename");
-        if (!filename) throw InputError(element.place, "obj: expected a <string name=\"filename\">");
-        const bool face_normals = properties.boolean("face_normals").value_or(false);
-        const bool flip_texture = properties.boolean("flip_tex_coords").value_or(true);
-        const std::filesystem::path file = element.file_called(*filename);
-        read_part(file, properties.place_of("filename"), bytes_read_);
-        MeshDescription mesh = load_obj_mesh(file, face_normals);
-        if (flip_texture)
-            for (Imath::V2d& uv : mesh.texture_coordinates) uv.y = 1.0 - uv.y;
-        return mesh;
-    }
-
-    static SphereDescription read_sphere(const XmlElement& element, Properties& properties, const Matrix& to_world,
-                                         bool flip_normals) {
-        const VectorD centre = properties.vector("center").value_or(VectorD(0.0));
-        const double radius = properties.number("radius").value_or(1.0);
-        if (!(radius > 0.0))
-            throw InputError(properties.place_of("radius"),
-                             fmt::format("radius: expected a number above 0, got {}", radius));
-        return {.centre = transform_point(to_world, centre),
-                .radius = radius * uniform_scale(to_world, 3, element.place),
-                .flip_normals = flip_normals};
-    }
-
-    /// [-1, 1]^2 at z = 0, facing +z.
-    static MeshDescription rectangle() {
-        MeshDescription mesh;
-        mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-        mesh.texture_coordinates = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-        mesh.triangles.emplace_back(0, 1, 2);
-        mesh.triangles.emplace_back(0, 2, 3);
-        return mesh;
-    }
-
-    /// [-1, 1]^3, facing outwards; corners apart on each face, so that texture coordinates run over each.
-    static MeshDescription cube() {
-        MeshDescription mesh;
-        const MeshDescription face = rectangle();
-        for (int axis = 0; axis < 3; ++axis)
-            for (const double side : {-1.0, 1.0}) {
-                const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-                for (const VectorD& corner : face.positions) {
-                    VectorD position;
-                    position[axis] = side;
-                    position[(axis + 1) % 3] = side * corner.x;
-                    position[(axis + 2) % 3] = corner.y;
-                    mesh.positions.push_back(position);
-                }
-                mesh.texture_coordinates.insert(mesh.texture_coordinates.end(), face.texture_coordinates.begin(),
-                                                face.texture_coordinates.end());
-                for (const auto& triangle : face.triangles)
-                    mesh.triangles.push_back({first + triangle.x, first + triangle.y, first + triangle.z});
-            }
-        return mesh;
-    }
-
-    /// Moves a mesh to the world. A mirroring turns triangles inside out, so it turns them back: outside stays outside.
-    static MeshDescription place_mesh(MeshDescription mesh, const Matrix& to_world, bool flip_normals) {
-        for (VectorD& position : mesh.positions) position = transform_point(to_world, position);
-        for (VectorD& normal : mesh.normals) normal = transform_normal(to_world, flip_normals ? -normal : normal);
-        if ((handedness(to_world) < 0.0) != flip_normals)
-            for (auto& triangle : mesh.triangles) std::swap(triangle.y, triangle.z);
-        return mesh;
+        return *index;
     }
 
     // -----------------------------------------------------------------------------------------------------------------
@@ -240,12 +199,29 @@ private:
         return light;
     }
 
-    static ColorD read_area_light(const XmlElement& element) {
+    /// How often a light is chosen, which changes the noise of an image and not what it shows.
+    void read_sampling_weight(Properties& properties) {
+        const auto weight = properties.number("sampling_weight");
+        if (!weight) return;
+        if (!(*weight > 0.0))
+            throw InputError(properties.place_of("sampling_weight"),
+                             fmt::format("sampling_weight: expected a number above 0, got {}", *weight));
+        note("sampling_weight of emitters: not read; they are chosen by their power");
+    }
+
+    ColorD read_area_light(const XmlElement& element) {
         if (element.require("type") != "area") fail_unknown(element, "area (in a shape), point (in the scene)");
+        lights_without_shape_.erase(&element);
         Properties properties(element);
         const ColorD radiance = read_light(properties, "radiance", ColorD(1.0));
+        read_sampling_weight(properties);
         properties.require_all_known();
         return radiance;
+    }
+
+    /// An area light in the scene itself, which shapes before it or behind it name by its id.
+    static bool is_for_shapes(const XmlElement& element) {
+        return element.tag == "emitter" && element.attribute("type") == "area" && !element.attribute("id").empty();
     }
 
     void add_point_light(const XmlElement& element) {
@@ -258,6 +234,7 @@ private:
         if (position && to_world) throw InputError(element.place, "point: expected position or to_world, got both");
         light.position = position ? *position : transform_point(to_world.value_or(Matrix()), VectorD(0.0));
         light.intensity = read_light(properties, "intensity", ColorD(1.0));
+        read_sampling_weight(properties);
         properties.require_all_known();
         scene_.point_lights.push_back(light);
     }
@@ -272,6 +249,9 @@ private:
                 throw InputError(properties.place_of("max_depth"),
                                  fmt::format("max_depth: expected -1 or 1 to 1000000, got {}", *max_depth));
             scene_.max_depth = static_cast<int>(*max_depth);
+        } else if (element.attribute("type") == "direct") {
+            scene_.max_depth = 2;
+            note("integrator \"direct\": read as max_depth 2");
         }
         for (const XmlElement* nested : properties.objects())
             if (nested->tag == "integrator") read_integrator(*nested);
@@ -297,8 +277,8 @@ private:
                                  fmt::format("{}: expected 1 to 16384 pixels, got {}", name, value));
             return static_cast<int>(value);
         };
-        scene_.camera.width = size("width", 768);
-        scene_.camera.height = size("height", 576);
+        scene_.camera.width = size("width", type == "mfilm" ? 1 : 768);
+        scene_.camera.height = size("height", type == "mfilm" ? 1 : 576);
         const std::pair<const char*, long> whole_film[] = {{"crop_offset_x", 0},
                                                            {"crop_offset_y", 0},
                                                            {"crop_width", scene_.camera.width},
@@ -322,6 +302,7 @@ private:
         const auto fov = properties.number("fov");
         const auto focal_length = properties.text("focal_length");
         std::string axis = properties.text("fov_axis").value_or("x");
+        for (char& c : axis) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
         if (fov && focal_length) throw InputError(element.place, "perspective: expected fov or focal_length, got both");
         double degrees = 0.0;
         if (fov) {
@@ -349,6 +330,7 @@ private:
     void read_sensor(const XmlElement& element) {
         if (element.require("type") != "perspective") fail_unknown(element, "perspective");
         Properties properties(element);
+        scene_.camera.place = properties.place_of("to_world");
         scene_.camera.to_world = properties.transform("to_world").value_or(Matrix());
         for (const XmlElement* object : properties.objects()) {
             const XmlElement& plugin = resolve(*object);
@@ -378,6 +360,8 @@ private:
     std::map<std::string, const XmlElement*> by_id_;
     std::map<const XmlElement*, std::size_t> materials_;
     std::optional<std::size_t> default_material_;
+    std::optional<std::size_t> default_of_lights_;
+    std::set<const XmlElement*> lights_without_shape_;  // of those in the scene itself that are for shapes
 };
 
 }  // namespace

@@ -27,6 +27,7 @@ struct Material {
     bool two_sided = false;                       ///< false: black from behind, unless light passes through
     std::shared_ptr<const Texture> texture = {};  ///< takes the place of a Diffuse's reflectance
     std::shared_ptr<const MerlTable> table = {};  ///< what a Merl looks up
+    std::string place = {};                       ///< "file:line" for messages, or ""
 };
 
 /// Mirrors and glass: light goes on in single directions.

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "core/error.h"
 #include "scene/properties.h"
@@ -14,12 +15,20 @@ namespace {
 
 constexpr std::size_t texture_pixel_limit = std::size_t{1} << 27;  // of a scene: small files can hold very many
 
-/// A factor on what a surface reflects or lets through; 1 where it is not given.
-Color read_factor(Properties& properties, const std::string& name, double missing) {
-    const ColorD factor = properties.reflectance(name).value_or(ColorD(missing));
-    if (std::min({factor.x, factor.y, factor.z}) < 0.0 || std::max({factor.x, factor.y, factor.z}) > 1.0)
+/// A factor on what a surface reflects or lets through. Where it is above 1, Mitsuba 3 refuses it and 0.6 scales it
+/// down to 0.99.
+Color read_factor(Properties& properties, const std::string& name, double missing, const MaterialSource& source) {
+    ColorD factor = properties.reflectance(name).value_or(ColorD(missing));
+    const double largest = std::max({factor.x, factor.y, factor.z});
+    const bool is_scaled = largest > 1.0 && properties.family() == MitsubaFamily::Version06;
+    if (std::min({factor.x, factor.y, factor.z}) < 0.0 || (largest > 1.0 && !is_scaled))
         throw InputError(properties.place_of(name), fmt::format("{}: expected values in [0, 1], got {} {} {}", name,
                                                                 factor.x, factor.y, factor.z));
+    if (is_scaled) {
+        source.note(fmt::format("{}: {} of {:.3f} {:.3f} {:.3f} is scaled by {:.4f}, as in Mitsuba 0.6",
+                                properties.place_of(name), name, factor.x, factor.y, factor.z, 0.99 / largest));
+        factor *= 0.99 / largest;
+    }
     return Color(factor);
 }
 
@@ -62,19 +71,22 @@ std::shared_ptr<const Texture> read_bitmap(const XmlElement& element, const Mate
 Material read_diffuse(const XmlElement&, Properties& properties, const MaterialSource& source) {
     Material material;
     Diffuse diffuse;
+    // 0.6 knows the reflectance by this name, too.
+    const std::string other = properties.family() == MitsubaFamily::Version06 ? "diffuse_reflectance" : "reflectance";
+    const std::string name = properties.has(other) && !properties.has("reflectance") ? other : "reflectance";
     for (const XmlElement* object : properties.objects()) {
         const XmlElement& texture = source.resolve(*object);
-        if (texture.tag != "texture" || object->attribute("name") != "reflectance" || material.texture)
+        const std::string child = object->attribute("name");
+        if (texture.tag != "texture" || (child != "reflectance" && child != other) || material.texture)
             throw InputError(
                 object->place,
                 fmt::format("diffuse: expected one reflectance, a colour or a texture of that name, got <{}>",
                             object->tag));
         material.texture = read_bitmap(texture, source);
     }
-    if (material.texture && properties.reflectance("reflectance"))
-        throw InputError(properties.place_of("reflectance"),
-                         "diffuse: expected one reflectance, got a colour and a texture");
-    diffuse.reflectance = read_factor(properties, "reflectance", 0.5);
+    if (material.texture && properties.reflectance(name))
+        throw InputError(properties.place_of(name), "diffuse: expected one reflectance, got a colour and a texture");
+    diffuse.reflectance = read_factor(properties, name, 0.5, source);
     material.bsdf = diffuse;
     return material;
 }
@@ -97,7 +109,8 @@ float read_index(Properties& properties, const std::string& name, const std::str
                              fmt::format("{}: expected an index of 0.1 to 10, got {}", name, index));
         return static_cast<float>(index);
     }
-    const std::string medium = value ? std::get<std::string>(*value) : missing;
+    std::string medium = value ? std::get<std::string>(*value) : missing;
+    for (char& c : medium) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     std::vector<std::string> known;
     for (const NamedMedium& candidate : named_media()) {
         if (candidate.name == medium) return static_cast<float>(candidate.index);
@@ -107,53 +120,53 @@ float read_index(Properties& properties, const std::string& name, const std::str
                                                             medium, fmt::join(known, ", ")));
 }
 
-Material read_dielectric(const XmlElement&, Properties& properties, const MaterialSource&) {
+Material read_dielectric(const XmlElement&, Properties& properties, const MaterialSource& source) {
     require_no_objects(properties, "dielectric");
     Material material;
     material.bsdf = Dielectric{.index_here = read_index(properties, "ext_ior", "air"),
                                .index_beyond = read_index(properties, "int_ior", "bk7"),
-                               .reflectance = read_factor(properties, "specular_reflectance", 1.0),
-                               .transmittance = read_factor(properties, "specular_transmittance", 1.0)};
+                               .reflectance = read_factor(properties, "specular_reflectance", 1.0, source),
+                               .transmittance = read_factor(properties, "specular_transmittance", 1.0, source)};
     return material;
 }
 
-/// A metal's index per channel, relative to the medium around it.
-Color read_metal_index(Properties& properties, const std::string& name) {
-    const ColorD index = *properties.index_of_refraction(name);
+/// A metal's index per channel, or `missing`.
+ColorD read_metal_index(Properties& properties, const std::string& name, const Color& missing) {
+    const ColorD index = properties.index_of_refraction(name).value_or(ColorD(missing));
     if (std::min({index.x, index.y, index.z}) < 0.0)
         throw InputError(properties.place_of(name), fmt::format("{}: expected values of at least 0, got {} {} {}", name,
                                                                 index.x, index.y, index.z));
-    return Color(index);
+    return index;
 }
 
-Material read_conductor(const XmlElement& element, Properties& properties, const MaterialSource&) {
+/// The metal that a conductor names; where it names none, copper in 0.6 and the perfect mirror in 3.
+const NamedConductor& read_metal(Properties& properties) {
+    const bool is_version_06 = properties.family() == MitsubaFamily::Version06;
+    const std::string wanted = properties.text("material").value_or(is_version_06 ? "Cu" : "none");
+    const auto& known = named_conductors();
+    const auto found =
+        std::find_if(known.begin(), known.end(), [&](const auto& metal) { return metal.name == wanted; });
+    if (found != known.end()) return *found;
+    std::vector<std::string> names;
+    for (const NamedConductor& metal : known) names.push_back(metal.name);
+    throw InputError(
+        properties.place_of("material"),
+        fmt::format("unknown material \"{}\"; known here: {}; or eta and k", wanted, fmt::join(names, ", ")));
+}
+
+/// In 0.6 eta and k replace those of the metal, and both are relative to the medium around it. Mitsuba 3 has either the
+/// one or the other.
+Material read_conductor(const XmlElement& element, Properties& properties, const MaterialSource& source) {
     require_no_objects(properties, "conductor");
     Conductor conductor;
-    conductor.reflectance = read_factor(properties, "specular_reflectance", 1.0);
-    const auto name = properties.text("material");
-    const bool has_eta = properties.has("eta");
-    const bool has_k = properties.has("k");
-    if (name && (has_eta || has_k))
+    conductor.reflectance = read_factor(properties, "specular_reflectance", 1.0, source);
+    const bool is_version_06 = properties.family() == MitsubaFamily::Version06;
+    const NamedConductor& metal = read_metal(properties);
+    if (metal.name != "none" && (properties.has("eta") || properties.has("k")) && !is_version_06)
         throw InputError(element.place, "conductor: expected a material's name or eta and k, got both");
-    if (has_eta != has_k) throw InputError(element.place, "conductor: expected both eta and k, got one");
-    if (has_eta) {
-        conductor.eta = read_metal_index(properties, "eta");
-        conductor.k = read_metal_index(properties, "k");
-    } else {
-        const auto& known = named_conductors();
-        const std::string wanted = name.value_or("none");
-        const auto found =
-            std::find_if(known.begin(), known.end(), [&](const auto& metal) { return metal.name == wanted; });
-        if (found == known.end()) {
-            std::vector<std::string> names;
-            for (const NamedConductor& metal : known) names.push_back(metal.name);
-            throw InputError(
-                properties.place_of("material"),
-                fmt::format("unknown material \"{}\"; known here: {}; or eta and k", wanted, fmt::join(names, ", ")));
-        }
-        conductor.eta = found->eta;
-        conductor.k = found->k;
-    }
+    const double outside = is_version_06 ? read_index(properties, "ext_eta", "air") : 1.0;
+    conductor.eta = Color(read_metal_index(properties, "eta", metal.eta) / outside);
+    conductor.k = Color(read_metal_index(properties, "k", metal.k) / outside);
     Material material;
     material.bsdf = conductor;
     return material;

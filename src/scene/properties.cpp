@@ -18,19 +18,22 @@ const std::set<std::string> color_tags{"float", "rgb", "spectrum", "srgb"};
 const std::set<std::string> object_tags{"bsdf", "emitter", "film",    "integrator", "medium", "phase",
                                         "ref",  "rfilter", "sampler", "sensor",     "shape",  "texture"};
 
-/// "#rrggbb", which is sRGB wherever it stands.
-ColorD parse_hexadecimal(const std::string& text, const std::string& place) {
+/// "#rrggbb": sRGB, except in an <rgb> of Mitsuba 0.6, which takes the bytes for linear.
+ColorD parse_hexadecimal(const std::string& text, const XmlElement& element) {
     if (text.size() != 7 || text.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
-        throw InputError(place, fmt::format("expected a colour as #rrggbb, got \"{}\"", excerpt(text)));
+        throw InputError(element.place, fmt::format("expected a colour as #rrggbb, got \"{}\"", excerpt(text)));
+    const bool is_linear = element.tag == "rgb" && element.family() == MitsubaFamily::Version06;
     ColorD color;
-    for (unsigned i = 0; i < 3; ++i)
-        color[static_cast<int>(i)] = srgb_to_linear(std::stoi(text.substr(1 + 2 * i, 2), nullptr, 16) / 255.0);
+    for (unsigned i = 0; i < 3; ++i) {
+        const double value = std::stoi(text.substr(1 + 2 * i, 2), nullptr, 16) / 255.0;
+        color[static_cast<int>(i)] = is_linear ? value : srgb_to_linear(value);
+    }
     return color;
 }
 
 ColorD parse_rgb(const XmlElement& element) {
     const std::string& text = element.require("value");
-    if (!text.empty() && text.front() == '#') return parse_hexadecimal(text, element.place);
+    if (!text.empty() && text.front() == '#') return parse_hexadecimal(text, element);
     const std::vector<double> numbers = parse_numbers(text, element.place);
     if (numbers.size() != 1 && numbers.size() != 3)
         throw InputError(element.place, fmt::format("expected 1 or 3 numbers, got \"{}\"", excerpt(text)));
@@ -41,13 +44,49 @@ ColorD parse_rgb(const XmlElement& element) {
     return {channel(0), channel(1), channel(2)};
 }
 
+/// A <spectrum> that is a plugin of Mitsuba 3: those that an RGB renderer evaluates.
+ColorD parse_spectrum_plugin(const XmlElement& element) {
+    const std::string& type = element.require("type");
+    Properties properties(element);
+    ColorD color(1.0);
+    if (type == "uniform") {
+        const auto value = properties.number("value");
+        if (!value) throw InputError(element.place, "uniform: expected a <float name=\"value\">");
+        color = ColorD(*value);
+    } else if (type == "srgb") {
+        const auto value = properties.reflectance("color");
+        if (!value) throw InputError(element.place, "srgb: expected an <rgb name=\"color\">");
+        color = *value;
+    } else if (type == "d65") {
+        color = properties.reflectance("color").value_or(ColorD(1.0)) * properties.number("scale").value_or(1.0);
+    } else {
+        throw InputError(element.place, fmt::format("unknown spectrum \"{}\"; known here: d65, srgb, uniform, or pairs "
+                                                    "wavelength:value",
+                                                    type));
+    }
+    properties.require_all_known();
+    if (!properties.objects().empty())
+        throw InputError(properties.objects().front()->place, fmt::format("{}: expected no nested plugin", type));
+    return color;
+}
+
+bool is_plugin(const XmlElement& element) {
+    return element.tag == "spectrum" && !element.attribute("type").empty();
+}
+
+/// What all colours have in common but those by wavelength.
+ColorD parse_color(const XmlElement& element) {
+    return is_plugin(element) ? parse_spectrum_plugin(element) : parse_rgb(element);
+}
+
 bool is_by_wavelength(const XmlElement& element) {
-    return element.tag == "spectrum" && element.require("value").find(':') != std::string::npos;
+    return element.tag == "spectrum" && !is_plugin(element) && element.require("value").find(':') != std::string::npos;
 }
 
 /// A single value that stands for all wavelengths.
 bool is_uniform_spectrum(const XmlElement& element) {
-    return element.tag == "spectrum" && parse_numbers(element.require("value"), element.place).size() == 1;
+    return element.tag == "spectrum" && !is_plugin(element) &&
+           parse_numbers(element.require("value"), element.place).size() == 1;
 }
 
 }  // namespace
@@ -111,20 +150,23 @@ std::optional<std::variant<double, std::string>> Properties::number_or_text(cons
 std::optional<ColorD> Properties::reflectance(const std::string& name) {
     const XmlElement* element = take(name, color_tags);
     if (!element) return std::nullopt;
-    if (!is_by_wavelength(*element)) return parse_rgb(*element);
+    if (!is_by_wavelength(*element)) return parse_color(*element);
     const Spectrum spectrum = parse_spectrum(element->require("value"), element->place);
+    const bool is_version_06 = element->family() == MitsubaFamily::Version06;
     for (const double value : spectrum.values)
-        if (value < 0.0 || value > 1.0)
+        if (value < 0.0 || (value > 1.0 && !is_version_06))
             throw InputError(element->place, fmt::format("{}: expected values in [0, 1], got {}", name, value));
-    const ColorD rgb = reflectance_to_rgb(spectrum);
+    if (is_version_06) return rgb_under_equal_energy(spectrum);
+    const ColorD rgb = rgb_under_d65(spectrum);
     return ColorD(std::min(rgb.x, 1.0), std::min(rgb.y, 1.0), std::min(rgb.z, 1.0));
 }
 
 std::optional<ColorD> Properties::index_of_refraction(const std::string& name) {
     const XmlElement* element = take(name, color_tags);
     if (!element) return std::nullopt;
-    if (!is_by_wavelength(*element)) return parse_rgb(*element);
-    return reflectance_to_rgb(parse_spectrum(element->require("value"), element->place));
+    if (!is_by_wavelength(*element)) return parse_color(*element);
+    const Spectrum spectrum = parse_spectrum(element->require("value"), element->place);
+    return element->family() == MitsubaFamily::Version06 ? rgb_under_equal_energy(spectrum) : rgb_under_d65(spectrum);
 }
 
 std::optional<ColorD> Properties::emission(const std::string& name) {
@@ -135,10 +177,12 @@ std::optional<ColorD> Properties::emission(const std::string& name) {
         for (const double value : spectrum.values)
             if (value < 0.0)
                 throw InputError(element->place, fmt::format("{}: expected values of at least 0, got {}", name, value));
-        return emission_to_rgb(spectrum);
+        return rgb_under_equal_energy(spectrum);
     }
-    if (is_uniform_spectrum(*element)) return equal_energy_white() * parse_rgb(*element);
-    return parse_rgb(*element);
+    // 0.6 takes the one value for a multiple of D65, which is white in its RGB builds.
+    if (is_uniform_spectrum(*element) && element->family() == MitsubaFamily::Version3)
+        return equal_energy_white() * parse_rgb(*element);
+    return parse_color(*element);
 }
 
 std::optional<VectorD> Properties::vector(const std::string& name) {

@@ -26,7 +26,7 @@ public:
     std::optional<std::string> text(const std::string& name);
     std::optional<std::variant<double, std::string>> number_or_text(const std::string& name);
     /// Linear RGB, from rgb, srgb, spectrum or float; what a spectrum is depends on whether it reflects, emits or
-    /// refracts.
+    /// refracts, and on the file's family.
     std::optional<ColorD> reflectance(const std::string& name);
     std::optional<ColorD> emission(const std::string& name);
     std::optional<ColorD> index_of_refraction(const std::string& name);
@@ -34,6 +34,8 @@ public:
     std::optional<Matrix> transform(const std::string& name);
 
     bool has(const std::string& name) const { return properties_.count(name) > 0; }
+
+    MitsubaFamily family() const { return plugin_.family(); }
 
     /// Nested plugins and references, in their order.
     const std::vector<const XmlElement*>& objects() const { return objects_; }

@@ -51,6 +51,12 @@ void include_shape(Bounds& bounds, const ShapeDescription& shape) {
 // ---------------------------------------------------------------------------------------------------------------------
 // What cannot be rendered is refused here, whether it came from a file or from a program.
 
+/// Of what a program describes without a file there is no place.
+[[noreturn]] void fail(const std::string& place, const std::string& message) {
+    if (place.empty()) throw InputError(message);
+    throw InputError(place, message);
+}
+
 void require_light(const ColorD& light, const std::string& place, std::string_view what) {
     if (!is_finite(light) || light.x < 0.0 || light.y < 0.0 || light.z < 0.0)
         throw InputError(place, fmt::format("{}: expected finite values of at least 0, got {} {} {}", what, light.x,
@@ -81,8 +87,8 @@ void require_mesh(const MeshDescription& mesh, const std::string& place) {
 
 void require_in_unit_range(const Material& material, std::string_view what, const Color& color) {
     if (!is_finite(color) || std::min({color.x, color.y, color.z}) < 0.0f || max_channel(color) > 1.0f)
-        throw InputError(fmt::format("material \"{}\": {}: expected values in [0, 1], got {} {} {}", material.id, what,
-                                     color.x, color.y, color.z));
+        fail(material.place, fmt::format("material \"{}\": {}: expected values in [0, 1], got {} {} {}", material.id,
+                                         what, color.x, color.y, color.z));
 }
 
 void require_material(const Material& material) {
@@ -92,16 +98,17 @@ void require_material(const Material& material) {
         require_in_unit_range(material, "reflectance", conductor->reflectance);
         for (const Color& index : {conductor->eta, conductor->k})
             if (!is_finite(index) || std::min({index.x, index.y, index.z}) < 0.0f)
-                throw InputError(fmt::format("material \"{}\": expected eta and k of at least 0", material.id));
+                fail(material.place, fmt::format("material \"{}\": expected eta and k of at least 0", material.id));
     } else if (const auto* dielectric = std::get_if<Dielectric>(&material.bsdf)) {
         require_in_unit_range(material, "reflectance", dielectric->reflectance);
         require_in_unit_range(material, "transmittance", dielectric->transmittance);
         for (const float index : {dielectric->index_here, dielectric->index_beyond})
             if (!std::isfinite(index) || !(index > 0.0f))
-                throw InputError(fmt::format("material \"{}\": expected an index above 0, got {}", material.id, index));
+                fail(material.place,
+                     fmt::format("material \"{}\": expected an index above 0, got {}", material.id, index));
     } else if (const auto* merl = std::get_if<Merl>(&material.bsdf)) {
         if (!merl->table || merl->table != material.table.get())
-            throw InputError(fmt::format("material \"{}\": expected its own table", material.id));
+            fail(material.place, fmt::format("material \"{}\": expected its own table", material.id));
     }
 }
 
@@ -210,8 +217,9 @@ std::array<double, 9> identity_of(std::array<VectorD, 3> triangle) {
     return numbers;
 }
 
-Shape make_shape(const ShapeDescription& description, const ToUnitBox& to_unit_box) {
+Shape make_shape(const ShapeDescription& description, const ToUnitBox& to_unit_box, bool has_texture) {
     Shape shape;
+    const auto axes = [&](const TextureAxes& all) { return has_texture ? std::optional(all) : std::nullopt; };
     shape.material = static_cast<std::uint32_t>(description.material);
     if (const auto* source = std::get_if<MeshDescription>(&description.geometry)) {
         TriangleMesh mesh;
@@ -235,12 +243,14 @@ Shape make_shape(const ShapeDescription& description, const ToUnitBox& to_unit_b
         shape.geometry = std::move(mesh);
     } else if (const auto* sphere = std::get_if<SphereDescription>(&description.geometry)) {
         const float radius = to_unit_box.length(sphere->radius);
-        shape.geometry = Sphere{to_unit_box(sphere->centre), radius, sphere->flip_normals ? -1.0f : 1.0f};
+        shape.geometry = Sphere{to_unit_box(sphere->centre), radius, sphere->flip_normals ? -1.0f : 1.0f,
+                                axes(sphere->texture_axes)};
         shape.area = 4.0 * pi * radius * radius;
     } else {
         const auto& disk = std::get<DiskDescription>(description.geometry);
         const float radius = to_unit_box.length(disk.radius);
-        shape.geometry = Disk{make_frame(Vector(disk.normal)), to_unit_box(disk.centre), radius};
+        shape.geometry =
+            Disk{make_frame(Vector(disk.normal)), to_unit_box(disk.centre), radius, axes(disk.texture_axes)};
         shape.area = pi * radius * radius;
     }
     return shape;
@@ -253,8 +263,8 @@ Camera make_camera(const CameraDescription& description, std::optional<Resolutio
     if (width < 1 || height < 1)
         throw InputError(fmt::format("resolution: expected at least 1 x 1, got {} x {}", width, height));
     if (!(description.fov_x > 0.0 && description.fov_x < 180.0))
-        throw InputError(
-            fmt::format("camera: expected a field of view in (0, 180) degrees, got {}", description.fov_x));
+        fail(description.place,
+             fmt::format("camera: expected a field of view in (0, 180) degrees, got {}", description.fov_x));
     const Matrix& m = description.to_world;
     const auto row = [&](int i) { return VectorD(m[i][0], m[i][1], m[i][2]); };
     const VectorD left = row(0).normalized();
@@ -263,11 +273,11 @@ Camera make_camera(const CameraDescription& description, std::optional<Resolutio
     const VectorD position = row(3);
     // Written so that NaN fails as well.
     if (!is_finite(position) || !(std::abs(left.cross(up).dot(forward)) > 0.0))
-        throw InputError("camera: to_world: expected an invertible transform with finite values");
+        fail(description.place, "camera: to_world: expected an invertible transform with finite values");
     if (!is_squarable(to_unit_box(position)))  // Embree takes no ray from there
-        throw InputError(
-            fmt::format("camera: position {} {} {} is too far from the scene, which is {} scene units large",
-                        position.x, position.y, position.z, to_unit_box.unit_length));
+        fail(description.place,
+             fmt::format("camera: position {} {} {} is too far from the scene, which is {} scene units large",
+                         position.x, position.y, position.z, to_unit_box.unit_length));
     const double image_width = 2.0 * std::tan(description.fov_x * pi / 360.0);  // at distance 1
     const double image_height = image_width * height / width;                   // square pixels
     return {.position = to_unit_box(position),
@@ -360,7 +370,8 @@ Scene build_scene(const SceneDescription& description, std::optional<Resolution>
     scene.materials = description.materials;
     scene.max_depth = description.max_depth;
     if (!bounds.is_empty()) scene.bounding_radius = to_unit_box.length(0.5 * (bounds.upper - bounds.lower).length());
-    for (const ShapeDescription& shape : description.shapes) scene.shapes.push_back(make_shape(shape, to_unit_box));
+    for (const ShapeDescription& shape : description.shapes)
+        scene.shapes.push_back(make_shape(shape, to_unit_box, scene.materials[shape.material].texture != nullptr));
     add_emitters(scene, description, to_unit_box);
     scene.camera = make_camera(description.camera, resolution, to_unit_box);
     scene.embree = build_embree_scene(scene.shapes);
@@ -395,6 +406,14 @@ void complete(Hit& hit, const TriangleMesh& mesh, const Ray& ray, float u, float
     if (!mesh.texture_coordinates.empty())
         hit.texture_coordinate = mesh.texture_coordinates[triangle.x] * w + mesh.texture_coordinates[triangle.y] * u +
                                  mesh.texture_coordinates[triangle.z] * v;
+    else
+        hit.texture_coordinate = Imath::V2f(u, v);
+}
+
+/// The angle from (1, 0) to (x, y), as a share of the circle, in [0, 1].
+double turn_to(double x, double y) {
+    const double angle = std::atan2(y, x) / (2.0 * pi);
+    return angle < 0.0 ? angle + 1.0 : angle;
 }
 
 void complete(Hit& hit, const Sphere& sphere, const Ray& ray, float, float) {
@@ -403,6 +422,10 @@ void complete(Hit& hit, const Sphere& sphere, const Ray& ray, float, float) {
     hit.position = Vector(centre + outward * sphere.radius);
     hit.geometric_normal = Vector(outward) * sphere.orientation;
     hit.shading_normal = hit.geometric_normal;
+    if (!sphere.texture_axes) return;
+    const auto& [x, y, z] = *sphere.texture_axes;
+    const double from_pole = std::acos(std::clamp(outward.dot(z), -1.0, 1.0)) / pi;
+    hit.texture_coordinate = Imath::V2f(Imath::V2d(turn_to(outward.dot(x), outward.dot(y)), from_pole));
 }
 
 void complete(Hit& hit, const Disk& disk, const Ray& ray, float, float) {
@@ -412,6 +435,10 @@ void complete(Hit& hit, const Disk& disk, const Ray& ray, float, float) {
     hit.position = Vector(position - normal * (position - centre).dot(normal));
     hit.geometric_normal = disk.frame.normal;
     hit.shading_normal = disk.frame.normal;
+    if (!disk.texture_axes) return;
+    const double x = (position - centre).dot((*disk.texture_axes)[0]) / disk.radius;
+    const double y = (position - centre).dot((*disk.texture_axes)[1]) / disk.radius;
+    hit.texture_coordinate = Imath::V2f(Imath::V2d(std::hypot(x, y), turn_to(x, y)));
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ inline constexpr std::uint32_t no_emitter = ~0u;
 struct TriangleMesh {
     std::vector<Vector> positions;
     std::vector<Vector> normals;                  ///< shading normals, one a vertex, or empty
-    std::vector<Imath::V2f> texture_coordinates;  ///< one a vertex, or empty
+    std::vector<Imath::V2f> texture_coordinates;  ///< one a vertex; empty: barycentric
     std::vector<Imath::Vec3<std::uint32_t>> triangles;
     std::vector<Vector> geometric_normals;  ///< unit, one a triangle; 0 for a triangle without area
 };
@@ -33,13 +33,15 @@ struct TriangleMesh {
 struct Sphere {
     Vector centre;
     float radius;
-    float orientation;  ///< +1: the normal points outwards; -1: to the centre
+    float orientation;                        ///< +1: the normal points outwards; -1: to the centre
+    std::optional<TextureAxes> texture_axes;  ///< where its material has a texture
 };
 
 struct Disk {
     Frame frame;  ///< its normal is the disk's
     Vector centre;
     float radius;
+    std::optional<TextureAxes> texture_axes;  ///< where its material has a texture
 };
 
 struct Shape {
@@ -63,9 +65,9 @@ struct PointLight {
 
 struct Emitter {
     std::variant<AreaLight, PointLight> kind;
-    ColorD power;               ///< of the whole emitter
-    double choice_probability;  ///< with which lights are chosen by power: mean_channel(power) / total
-    double choice_cdf;          ///< running sum of choice_probability, the last emitter's is 1
+    ColorD power;                      ///< of the whole emitter
+    double choice_probability;         ///< with which lights are chosen by power: mean_channel(power) / total
+    double choice_cdf;                 ///< running sum of choice_probability, the last emitter's is 1
     Color photon_power = Color(0.0f);  ///< what a photon starts with: power / (choice_probability * total_power)
 };
 

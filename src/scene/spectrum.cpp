@@ -125,11 +125,11 @@ Spectrum parse_spectrum(const std::string& text, const std::string& place) {
     return spectrum;
 }
 
-ColorD reflectance_to_rgb(const Spectrum& spectrum) {
+ColorD rgb_under_d65(const Spectrum& spectrum) {
     return to_rgb(spectrum, [](const ObserverRow& row) { return row.d65; });
 }
 
-ColorD emission_to_rgb(const Spectrum& spectrum) {
+ColorD rgb_under_equal_energy(const Spectrum& spectrum) {
     return to_rgb(spectrum, [](const ObserverRow&) { return 1.0; });
 }
 

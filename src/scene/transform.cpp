@@ -8,6 +8,10 @@ namespace photonlab {
 
 namespace {
 
+bool is_look_at(const XmlElement& element) {
+    return element.tag == "lookat" || element.tag == "lookAt" || element.tag == "look_at";
+}
+
 VectorD parse_three(const std::string& text, const std::string& place) {
     const std::vector<double> numbers = parse_numbers(text, place);
     if (numbers.size() != 3) throw InputError(place, fmt::format("expected 3 numbers, got \"{}\"", excerpt(text)));
@@ -29,13 +33,26 @@ Matrix parse_matrix(const XmlElement& element) {
     return result;
 }
 
-/// Camera axes as Mitsuba's: x to the left of the image, y up, z forward. Without `up` the versions of Mitsuba turn the
-/// camera differently about its axis, so it must be there.
+/// An up for the unit view direction `forward`, where the file has none: what Mitsuba's coordinate_system() gives it.
+VectorD up_for(const VectorD& forward, MitsubaFamily family) {
+    if (family == MitsubaFamily::Version06) {
+        const VectorD side = std::abs(forward.x) > std::abs(forward.y) ? VectorD(forward.z, 0.0, -forward.x)
+                                                                       : VectorD(0.0, forward.z, -forward.y);
+        return side.normalized().cross(forward);
+    }
+    const double sign =
+        std::copysign(1.0, forward.z);  // [Duff et al. 2017, "Building an Orthonormal Basis, Revisited"]
+    const double a = -1.0 / (sign + forward.z);
+    return {1.0 + sign * forward.x * forward.x * a, sign * forward.x * forward.y * a, -sign * forward.x};
+}
+
+/// Camera axes as Mitsuba's: x to the left of the image, y up, z forward.
 Matrix parse_look_at(const XmlElement& element) {
     const VectorD origin = parse_three(element.require("origin"), element.place);
     const VectorD target = parse_three(element.require("target"), element.place);
-    const VectorD up = parse_three(element.require("up"), element.place);
     const VectorD forward = (target - origin).normalized();
+    const VectorD up =
+        lacks_up(element) ? up_for(forward, element.family()) : parse_three(element.require("up"), element.place);
     const VectorD left = up.cross(forward).normalized();
     if (forward.length2() == 0.0 || left.length2() == 0.0)
         throw InputError(element.place,
@@ -62,7 +79,7 @@ Matrix parse_rotation(const XmlElement& element) {
 
 Matrix parse_element(const XmlElement& element) {
     if (element.tag == "matrix") return parse_matrix(element);
-    if (element.tag == "lookat" || element.tag == "lookAt" || element.tag == "look_at") return parse_look_at(element);
+    if (is_look_at(element)) return parse_look_at(element);
     if (element.tag == "rotate") return parse_rotation(element);
     Matrix result;
     if (element.tag == "translate") {
@@ -112,6 +129,12 @@ Matrix parse_transform(const XmlElement& element) {
     if (!(std::abs(handedness(result)) > 0.0) || !std::isfinite(handedness(result)) || !is_finite_translation)
         throw InputError(element.place, "expected an invertible transform with finite values");
     return result;
+}
+
+bool lacks_up(const XmlElement& element) {
+    if (!is_look_at(element)) return false;
+    const std::string up = element.attribute("up");
+    return up.find_first_not_of(" ,\t\r\n") == std::string::npos || parse_three(up, element.place) == VectorD(0.0);
 }
 
 VectorD transform_point(const Matrix& matrix, const VectorD& point) {

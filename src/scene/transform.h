@@ -10,6 +10,9 @@ namespace photonlab {
 /// The transform from local to world, in Imath's row-vector convention: p' = p * M. Throws InputError.
 Matrix parse_transform(const XmlElement& element);
 
+/// True for a <lookat> that leaves its up open.
+bool lacks_up(const XmlElement& element);
+
 /// A vector's or point's three numbers: from `value`, where one number stands for all three, or from x, y, z (each
 /// `missing` when it is not there).
 VectorD parse_vector(const XmlElement& element, double missing = 0.0);

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <pugixml.hpp>
 #include <set>
 
@@ -70,20 +71,25 @@ std::string to_snake_case(std::string_view name) {
 const std::set<std::string>* known_attributes(const std::string& tag) {
     static const std::set<std::string> plugin{"id", "name", "type"};
     static const std::set<std::string> value{"name", "value"};
+    static const std::set<std::string> color{"intent", "name", "type", "value"};
     static const std::set<std::string> vector{"name", "value", "x", "y", "z"};
     static const std::set<std::string> step{"value", "x", "y", "z"};
     static const std::set<std::string> look_at{"origin", "target", "up"};
     static const std::map<std::string, std::set<std::string>> others{{"scene", {"id", "name", "version"}},
                                                                      {"transform", {"name"}},
                                                                      {"include", {"filename"}},
+                                                                     {"path", {"value"}},
+                                                                     {"alias", {"as", "id"}},
                                                                      {"ref", {"id", "name"}},
                                                                      {"matrix", {"value"}},
                                                                      {"rotate", {"angle", "value", "x", "y", "z"}}};
     for (const char* name : {"bsdf", "emitter", "film", "integrator", "medium", "phase", "rfilter", "sampler", "sensor",
                              "shape", "texture"})
         if (tag == name) return &plugin;
-    for (const char* name : {"boolean", "default", "float", "integer", "rgb", "spectrum", "srgb", "string"})
+    for (const char* name : {"boolean", "default", "float", "integer", "srgb", "string"})
         if (tag == name) return &value;
+    // The numbers mean the same whatever their intent or an <rgb>'s type: RGB is what is computed in.
+    if (tag == "rgb" || tag == "spectrum") return &color;
     if (tag == "point" || tag == "vector") return &vector;
     if (tag == "translate" || tag == "scale") return &step;
     if (tag == "lookat" || tag == "lookAt" || tag == "look_at") return &look_at;
@@ -92,8 +98,10 @@ const std::set<std::string>* known_attributes(const std::string& tag) {
 }
 
 /// True for elements that have a place for others inside them.
-bool may_have_children(const std::set<std::string>& attributes, const std::string& tag) {
-    return attributes.count("type") || tag == "scene" || tag == "transform";
+bool may_have_children(const std::set<std::string>& known, const XmlElement& element) {
+    if (element.tag == "rgb") return false;
+    if (element.tag == "spectrum") return !element.attribute("type").empty();
+    return known.count("type") || element.tag == "scene" || element.tag == "transform";
 }
 
 void require_structure(const XmlElement& element, const pugi::xml_node& node) {
@@ -103,7 +111,7 @@ void require_structure(const XmlElement& element, const pugi::xml_node& node) {
         if (!known->count(name))
             throw InputError(element.place, fmt::format("unknown attribute \"{}\" of <{}>; known here: {}", name,
                                                         element.tag, fmt::join(*known, ", ")));
-    if (may_have_children(*known, element.tag)) return;
+    if (may_have_children(*known, element)) return;
     for (const pugi::xml_node& child : node.children())
         if (child.type() == pugi::node_element)
             throw InputError(element.place, fmt::format("unexpected <{}> inside <{}>", child.name(), element.tag));
@@ -124,13 +132,46 @@ bool is_name_character(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
 }
 
+/// By the version of <scene>. Both Mitsubas demand one of three numbers; 0.6 takes files of 0.4 and 0.5 as they are,
+/// and older ones only once they are rewritten.
+MitsubaFamily family_of(const pugi::xml_node& scene, const std::string& place) {
+    const pugi::xml_attribute attribute = scene.attribute("version");
+    if (!attribute)
+        throw InputError(place,
+                         "<scene> needs an attribute \"version\", that of the Mitsuba it is written for: three "
+                         "numbers such as 0.6.0 or 3.0.0");
+    std::vector<long> numbers;
+    for (std::string_view rest = trim(attribute.value());;) {
+        const std::size_t dot = rest.find('.');
+        numbers.push_back(number_in<long>(rest.substr(0, dot)).value_or(-1));
+        if (dot == rest.npos) break;
+        rest.remove_prefix(dot + 1);
+    }
+    if (numbers.size() == 3 && std::min(numbers[1], numbers[2]) >= 0) {
+        if (numbers[0] == 0 && numbers[1] >= 4 && numbers[1] <= 6) return MitsubaFamily::Version06;
+        if (numbers[0] == 2 || numbers[0] == 3) return MitsubaFamily::Version3;
+    }
+    throw InputError(place,
+                     fmt::format("version: expected 0.4.0 to 0.6.0, or 2 or 3 in three numbers such as 3.0.0, got "
+                                 "\"{}\"",
+                                 excerpt(attribute.value())));
+}
+
+/// What exists of `candidates`, the last where nothing does: whoever reads it says what is wrong with its name.
+std::filesystem::path first_existing(const std::vector<std::filesystem::path>& candidates) {
+    std::error_code ignored;
+    for (const std::filesystem::path& candidate : candidates)
+        if (std::filesystem::exists(candidate, ignored)) return candidate;
+    return candidates.back();
+}
+
 class Reader {
 public:
-    Reader(const std::filesystem::path& scene_folder, const std::map<std::string, std::string>& parameters,
-           std::string& bytes_read)
-        : scene_folder_(scene_folder), parameters_(parameters), bytes_read_(bytes_read) {}
+    Reader(const std::map<std::string, std::string>& parameters, std::string& bytes_read)
+        : parameters_(parameters), bytes_read_(bytes_read) {}
 
-    XmlElement read_file(const std::filesystem::path& file, const std::string& from) {
+    XmlElement read_file(const std::filesystem::path& file, const std::string& from,
+                         std::shared_ptr<const SceneFile> includer) {
         std::error_code ignored;
         const std::filesystem::path canonical = std::filesystem::weakly_canonical(file, ignored);
         if (std::find(open_files_.begin(), open_files_.end(), canonical) != open_files_.end())
@@ -171,7 +212,11 @@ public:
         if (std::string_view(root.name()) != "scene")
             throw InputError(place_at(root.offset_debug()),
                              fmt::format("expected <scene>, got <{}>", excerpt(root.name())));
-        XmlElement scene = convert(root, file, lines, 1);
+        const auto scene_file = std::make_shared<SceneFile>();
+        scene_file->folder = file.parent_path();
+        scene_file->family = family_of(root, place_at(root.offset_debug()));
+        scene_file->includer = std::move(includer);
+        XmlElement scene = convert(root, file, scene_file, lines, 1);
         open_files_.pop_back();
         return scene;
     }
@@ -184,8 +229,8 @@ public:
     }
 
 private:
-    XmlElement convert(const pugi::xml_node& node, const std::filesystem::path& file, const LineNumbers& lines,
-                       int depth) {
+    XmlElement convert(const pugi::xml_node& node, const std::filesystem::path& file,
+                       const std::shared_ptr<SceneFile>& scene_file, const LineNumbers& lines, int depth) {
         if (++elements_ > element_limit)
             throw InputError(file.string(), fmt::format("expected at most {} elements", element_limit));
         XmlElement element;
@@ -194,8 +239,7 @@ private:
         if (depth > nesting_limit)
             throw InputError(element.place,
                              fmt::format("expected at most {} elements inside each other", nesting_limit));
-        element.scene_folder = scene_folder_;
-        element.own_folder = file.parent_path();
+        element.file = scene_file;
         for (const pugi::xml_attribute& attribute : node.attributes()) {
             const std::string name = attribute.name();
             std::string value = replace_names(attribute.value(), element.place);
@@ -209,20 +253,43 @@ private:
                 throw InputError(element.place, fmt::format("unexpected text \"{}\" inside <{}>",
                                                             excerpt(child.value()), element.tag));
             if (child.type() != pugi::node_element) continue;
-            XmlElement converted = convert(child, file, lines, depth + 1);
+            XmlElement converted = convert(child, file, scene_file, lines, depth + 1);
             if (converted.tag == "default") {
                 const std::string& name = converted.require("name");
                 const auto given = parameters_.find(name);
                 values_.emplace(name, given != parameters_.end() ? given->second : converted.require("value"));
                 used_.insert(name);
             } else if (converted.tag == "include") {
-                XmlElement included = read_file(converted.file_called(converted.require("filename")), converted.place);
+                XmlElement included = read_file(included_file(converted), converted.place, scene_file);
                 for (XmlElement& inner : included.children) element.children.push_back(std::move(inner));
+            } else if (converted.tag == "path" && depth == 1) {
+                if (const auto folder = search_folder(converted)) {
+                    scene_file->search_folders.push_back(*folder);
+                } else {
+                    element.children.push_back(std::move(converted));
+                }
             } else {
                 element.children.push_back(std::move(converted));
             }
         }
         return element;
+    }
+
+    /// The file of an <include>, which Mitsuba 3 looks for beside the file that it stands in first.
+    static std::filesystem::path included_file(const XmlElement& element) {
+        const std::string& name = element.require("filename");
+        const std::filesystem::path called = element.file_called(name);
+        if (element.family() == MitsubaFamily::Version06) return called;
+        return first_existing({element.file->folder / name, called});
+    }
+
+    /// The folder that a <path> adds to those in which files are looked for; empty when it is not there.
+    static std::optional<std::filesystem::path> search_folder(const XmlElement& element) {
+        const std::string& name = element.require("value");
+        const std::filesystem::path folder = first_existing({element.file->folder / name, element.file_called(name)});
+        std::error_code ignored;
+        if (!std::filesystem::is_directory(folder, ignored)) return std::nullopt;
+        return folder;
     }
 
     /// Puts values in for $names; the longest known name wins, as in Mitsuba.
@@ -258,7 +325,6 @@ private:
         return found == values_.end() ? nullptr : &found->second;
     }
 
-    const std::filesystem::path scene_folder_;
     const std::map<std::string, std::string>& parameters_;
     std::string& bytes_read_;
     std::map<std::string, std::string> values_;  // of the <default>s read so far
@@ -283,18 +349,24 @@ const std::string& XmlElement::require(std::string_view name) const {
 
 std::filesystem::path XmlElement::file_called(const std::string& name) const {
     if (name.empty()) throw InputError(place, fmt::format("<{}>: expected the name of a file, it is empty", tag));
-    const std::filesystem::path beside_scene = scene_folder / name;
-    const std::filesystem::path beside_own = own_folder / name;
-    std::error_code ignored;  // whoever reads the file says what is wrong with its name
-    const bool is_beside_own =
-        !std::filesystem::exists(beside_scene, ignored) && std::filesystem::exists(beside_own, ignored);
-    return is_beside_own ? beside_own : beside_scene;
+    std::vector<std::filesystem::path> candidates;
+    const SceneFile* outermost = file.get();
+    for (const SceneFile* from = file.get(); from; from = from->includer.get()) {
+        for (auto folder = from->search_folders.rbegin(); folder != from->search_folders.rend(); ++folder)
+            candidates.push_back(*folder / name);
+        outermost = from;
+    }
+    candidates.push_back(outermost->folder / name);
+    candidates.push_back(file->folder / name);
+    // The scene's folder is where a missing file is said to be missing.
+    candidates.push_back(outermost->folder / name);
+    return first_existing(candidates);
 }
 
 XmlElement read_scene_xml(const std::filesystem::path& file, const std::map<std::string, std::string>& parameters,
                           std::string& bytes_read) {
-    Reader reader(file.parent_path(), parameters, bytes_read);
-    XmlElement scene = reader.read_file(file, file.string());
+    Reader reader(parameters, bytes_read);
+    XmlElement scene = reader.read_file(file, file.string(), nullptr);
     reader.require_all_used(file);
     return scene;
 }

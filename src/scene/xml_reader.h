@@ -1,24 +1,41 @@
 // The XML of a Mitsuba scene file without its meaning: includes followed, defaults and $names put in, both spellings of
-// names folded into one, and every element knowing the file and line where it stands. What elements mean is in
-// loader.cpp.
+// names folded into one, and every element knowing the file and line where it stands and which Mitsuba it speaks to.
+// What elements mean is in loader.cpp.
 
 #pragma once
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace photonlab {
 
+/// Which Mitsuba a file was written for, by the version in its <scene>. The two read some files differently: whoever
+/// gives an element its meaning asks for its family.
+enum class MitsubaFamily {
+    Version06,  ///< 0.4 to 0.6
+    Version3    ///< 2 and 3
+};
+
+/// A file that elements stand in.
+struct SceneFile {
+    std::filesystem::path folder;
+    MitsubaFamily family = MitsubaFamily::Version3;
+    std::vector<std::filesystem::path> search_folders;  ///< of its <path>s, in their order
+    std::shared_ptr<const SceneFile> includer;          ///< null: the scene file that was asked for
+};
+
 struct XmlElement {
     std::string tag;                                ///< as written: "shape", "rgb", ...
     std::map<std::string, std::string> attributes;  ///< $names replaced; `name` in snake_case ("toWorld" is "to_world")
     std::vector<XmlElement> children;
-    std::string place;                   ///< "file:line"
-    std::filesystem::path scene_folder;  ///< of the scene file that was asked for
-    std::filesystem::path own_folder;    ///< of the file it stands in: another one inside an include
+    std::string place;                      ///< "file:line"
+    std::shared_ptr<const SceneFile> file;  ///< never null
+
+    MitsubaFamily family() const { return file->family; }
 
     /// The attribute's value, or "" when there is none.
     std::string attribute(std::string_view name) const;
@@ -26,13 +43,14 @@ struct XmlElement {
     /// The attribute's value; InputError when there is none.
     const std::string& require(std::string_view name) const;
 
-    /// The file that the element names: relative to the scene's folder, as in Mitsuba, or else to its own file's
-    /// folder.
+    /// The file that the element names: the first that exists in the folders of <path>s (the last one first), the
+    /// scene's folder, and its own file's.
     std::filesystem::path file_called(const std::string& name) const;
 };
 
 /// Reads `file` and what it includes. Returns its <scene>, the children of included scenes in place of each <include>,
-/// <default>s removed. `parameters` replace the values of defaults. Every byte read is appended to `bytes_read`.
+/// <default>s removed, and of <path>s those left whose folder is not there. `parameters` replace the values of
+/// defaults. Every byte read is appended to `bytes_read`.
 XmlElement read_scene_xml(const std::filesystem::path& file, const std::map<std::string, std::string>& parameters,
                           std::string& bytes_read);
 

@@ -171,7 +171,7 @@ TEST_F(ProgramMistakes, AreNotScenesWithoutLightOrSurfaceWhichAreBlackAndSayWhy)
 }
 
 TEST_F(ProgramMistakes, MessagesAreOneLineThatATerminalCanShow) {
-    const std::string bell = "<scene>\n<shape type='\x1b[31mred &#10;\x07'/></scene>";
+    const std::string bell = "<scene version='3.0.0'>\n<shape type='\x1b[31mred &#10;\x07'/></scene>";
     const std::string message = refusal_of("info '" + folder_.write("bell.xml", bell).filename().string() + "'");
     for (const char c : message) EXPECT_GE(static_cast<unsigned char>(c), 0x20u);
     EXPECT_EQ(message.substr(0, 26), "bell.xml:2: unknown shape ");
@@ -179,11 +179,12 @@ TEST_F(ProgramMistakes, MessagesAreOneLineThatATerminalCanShow) {
     // Bytes that are no UTF-8, and a control character of two.
     folder_.write("mesh.obj", "v 0 0 0\n\x9b[2J\xc2\x9bx\n");
     folder_.write("mesh.xml",
-                  "<scene><sensor type='perspective'/><shape type='obj'><string name='filename' value='mesh.obj'/>"
+                  "<scene version='3.0.0'><sensor type='perspective'/><shape type='obj'><string name='filename' "
+                  "value='mesh.obj'/>"
                   "</shape></scene>");
     EXPECT_EQ(refusal_of("info mesh.xml").substr(0, 44), "mesh.obj:2: unknown keyword \"?[2J  x\"; known");
 
-    const std::string long_name = "<scene>\n<shape type='" + std::string(60'000, 'a') + "'/></scene>";
+    const std::string long_name = "<scene version='3.0.0'>\n<shape type='" + std::string(60'000, 'a') + "'/></scene>";
     EXPECT_LT(refusal_of("info '" + folder_.write("long.xml", long_name).filename().string() + "'").size(), 2100u);
 }
 

@@ -12,8 +12,6 @@
 
 namespace photonlab {
 
-using Geometry = std::variant<MeshDescription, SphereDescription, DiskDescription>;
-
 /// A parallelogram of two triangles; its normal is half_x cross half_y.
 inline MeshDescription square(const VectorD& centre, const VectorD& half_x, const VectorD& half_y) {
     MeshDescription mesh;

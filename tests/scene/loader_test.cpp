@@ -88,7 +88,7 @@ TEST_F(LoaderTest, DisksMayBeScaledAlongTheirNormal) {
 
 TEST_F(LoaderTest, ACropOfTheWholeFilmIsNoCrop) {
     const auto scene = load(
-        "<scene><sensor type='perspective'><film type='hdrfilm'><integer name='width' value='8'/>"
+        "<scene version='3.0.0'><sensor type='perspective'><film type='hdrfilm'><integer name='width' value='8'/>"
         "<integer name='height' value='6'/><integer name='cropOffsetX' value='0'/><integer name='crop_offset_y' "
         "value='0'/>"
         "<integer name='crop_width' value='8'/><integer name='cropHeight' value='6'/></film></sensor></scene>");
@@ -114,7 +114,7 @@ TEST_F(LoaderTest, MatricesAreRowsOfColumnVectorsWithOldExponents) {
 
 TEST_F(LoaderTest, LookAtHasXToTheLeftYUpAndZForward) {
     const auto scene = load(
-        "<scene><sensor type='perspective'><transform name='to_world'>"
+        "<scene version='3.0.0'><sensor type='perspective'><transform name='to_world'>"
         "<lookat origin='1,2,3' target='1,2,10' up='0,1,0'/></transform></sensor></scene>");
     const Matrix& m = scene.camera.to_world;
     expect_near({m[0][0], m[0][1], m[0][2]}, {1, 0, 0});
@@ -137,7 +137,7 @@ TEST_F(LoaderTest, MirroringKeepsTheOutsideOutside) {
 
 TEST_F(LoaderTest, FieldOfViewFollowsItsAxis) {
     const auto fov = [&](const std::string& axis) {
-        return load("<scene><sensor type='perspective'><float name='fov' value='60'/><string name='fovAxis' value='" +
+        return load("<scene version='3.0.0'><sensor type='perspective'><float name='fov' value='60'/><string name='fovAxis' value='" +
                     axis +
                     "'/><film type='hdrfilm'><integer name='width' value='200'/><integer name='height' "
                     "value='100'/></film>"
@@ -154,14 +154,14 @@ TEST_F(LoaderTest, FieldOfViewFollowsItsAxis) {
 
 TEST_F(LoaderTest, WithoutAnAngleTheLensIsFiftyMillimetres) {
     const auto scene = load(
-        "<scene><sensor type='perspective'><film type='hdrfilm'><integer name='width' value='300'/>"
+        "<scene version='3.0.0'><sensor type='perspective'><film type='hdrfilm'><integer name='width' value='300'/>"
         "<integer name='height' value='200'/></film></sensor></scene>");
     EXPECT_NEAR(scene.camera.fov_x, 2 * std::atan(36.0 / 100.0) * 180 / pi, 1e-9);
 }
 
 TEST_F(LoaderTest, DefaultsAreReplacedByParameters) {
     const std::string text =
-        "<scene><default name='w' value='12'/><default name='ww' value='34'/><sensor type='perspective'>"
+        "<scene version='3.0.0'><default name='w' value='12'/><default name='ww' value='34'/><sensor type='perspective'>"
         "<film type='hdrfilm'><integer name='width' value='$ww'/><integer name='height' value='$w'/></film>"
         "</sensor></scene>";
     EXPECT_EQ(load(text).camera.width, 34);
@@ -174,11 +174,11 @@ TEST_F(LoaderTest, DefaultsAreReplacedByParameters) {
 TEST_F(LoaderTest, IncludesAndNestedReferencesAreFollowed) {
     std::filesystem::create_directories(folder_ / "parts");
     write("parts/materials.xml",
-          "<scene><include filename='inner.xml'/><bsdf type='twosided' id='wall'><ref id='paint'/></bsdf></scene>");
+          "<scene version='3.0.0'><include filename='inner.xml'/><bsdf type='twosided' id='wall'><ref id='paint'/></bsdf></scene>");
     write("parts/inner.xml",
-          "<scene><bsdf type='diffuse' id='paint'><rgb name='reflectance' value='$level'/></bsdf></scene>");
+          "<scene version='3.0.0'><bsdf type='diffuse' id='paint'><rgb name='reflectance' value='$level'/></bsdf></scene>");
     const auto scene = load(
-        "<scene><default name='level' value='0.25'/><sensor type='perspective'/>"
+        "<scene version='3.0.0'><default name='level' value='0.25'/><sensor type='perspective'/>"
         "<shape type='sphere'><ref name='bsdf' id='wall'/></shape><include filename='parts/materials.xml'/></scene>");
     const Material& material = scene.materials.at(scene.shapes.at(0).material);
     EXPECT_TRUE(material.two_sided);
@@ -191,7 +191,7 @@ TEST_F(LoaderTest, FilesOfAnIncludeAreLookedForBesideTheSceneAndThenBesideTheInc
     write("a.obj", mesh);
     write("fragments/b.obj", mesh);
     write("fragments/shapes.xml",
-          "<scene><shape type='obj'><string name='filename' value='a.obj'/></shape>"
+          "<scene version='3.0.0'><shape type='obj'><string name='filename' value='a.obj'/></shape>"
           "<shape type='obj'><string name='filename' value='b.obj'/></shape></scene>");
     EXPECT_EQ(load_with_sensor("<include filename='fragments/shapes.xml'/>").shapes.size(), 2u);
 }
@@ -233,7 +233,7 @@ TEST_F(LoaderTest, PublicCornellBoxesOpenUnmodified) {
 
 TEST_F(LoaderTest, OfSeveralSensorsTheFirstIsUsedAndANoteSaysSo) {
     const auto scene = load(
-        "<scene><sensor type='perspective'><float name='fov' value='20'/></sensor>"
+        "<scene version='3.0.0'><sensor type='perspective'><float name='fov' value='20'/></sensor>"
         "<sensor type='perspective'><float name='fov' value='70'/></sensor></scene>");
     EXPECT_EQ(scene.camera.fov_x, 20.0);
     ASSERT_EQ(scene.notes.size(), 1u);

@@ -139,11 +139,80 @@ TEST_F(ObjMeshTest, VerticesHaveTheTextureCoordinatesOfTheirCorners) {
     }
 }
 
-TEST_F(ObjMeshTest, NormalsAndTextureCoordinatesOfSomeCornersAreThoseOfNone) {
-    const auto mesh = load(square + "vn 1 0 0\nvt 0.5 0.5\nf 1/1/1 2/1/1 3/1/1\nf 1 3 4\n", false);
-    EXPECT_TRUE(mesh.texture_coordinates.empty());
-    ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
-    for (const VectorD& normal : mesh.normals) EXPECT_EQ(normal, VectorD(0, 0, 1));
+// obj.cpp of Mitsuba: index 0 is none, of texture coordinates and of normals.
+TEST_F(ObjMeshTest, WhatIsEmptyOrZeroInACornerIsNone) {
+    const std::string data = square + "vt 0.5 0.25\nvn 0 0 -1\n";
+    for (const std::string corners :
+         {"1 2 3", "1/ 2/ 3/", "1// 2// 3//", "1/0 2/0 3/0", "1//0 2//0 3//0", "1/0/0 2/0/0 3/0/0", "1/0/ 2//0 3"}) {
+        const auto mesh = load(data + "f " + corners + "\n", false);
+        EXPECT_TRUE(mesh.texture_coordinates.empty()) << corners;
+        EXPECT_EQ(mesh.normals.at(0), VectorD(0, 0, 1)) << corners;
+    }
+    for (const std::string corners : {"1/1 2/1 3/1", "1/1/ 2/1/ 3/1/", "1/1/0 2/1/0 3/1/0"}) {
+        const auto mesh = load(data + "f " + corners + "\n", false);
+        EXPECT_EQ(mesh.texture_coordinates.at(0), Imath::V2d(0.5, 0.25)) << corners;
+        EXPECT_EQ(mesh.normals.at(0), VectorD(0, 0, 1)) << corners;
+    }
+    EXPECT_EQ(load(data + "f 1/0/1 2//1 3//1\n", false).normals.at(0), VectorD(0, 0, -1));
+}
+
+TEST_F(ObjMeshTest, CornersWithoutNormalsHaveThatOfTheirTriangle) {
+    const std::string roof = "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 0 0 1\n";
+    const VectorD down(0, 0, -1), front(0, -1, 0), given(1, 0, 0);
+    for (const std::string normals : {"vn 0 0 0\nvn 1 0 0\nf 1//1 2//1 3//1\nf 1//2 3//1 4//1\n",
+                                      "vn 1 0 0\nf 1 2 3\nf 1//1 3 4\n", "vn 2 0 0\nf 1//0 2 3\nf 1//1 3//0 4\n"}) {
+        const auto mesh = load(roof + normals, false);
+        const VectorD expected[] = {down, down, down, given, front, front};
+        for (std::size_t i = 0; i < 6; ++i) {
+            const auto& triangle = mesh.triangles.at(i / 3);
+            const std::uint32_t corner = i % 3 == 0 ? triangle.x : i % 3 == 1 ? triangle.y : triangle.z;
+            EXPECT_EQ(mesh.normals.at(corner), expected[i]) << normals << i;
+        }
+    }
+    for (const std::string unused : {"vn 0 0 0\n", "vn 0 0 1\nvn 0 0 0\n"})
+        EXPECT_EQ(load(roof + unused + "f 1 2 3\n", false).normals.at(0), down) << unused;
+    EXPECT_TRUE(load(roof + "vn 0 0 0\nf 1//1 2//1 3//1\n", true).normals.empty());
+}
+
+TEST_F(ObjMeshTest, CornersWithoutTextureCoordinatesHaveZeroWhereOthersHaveSome) {
+    const auto mesh = load(square + "vt 0.5 0.5\nf 1/1 2/1 3/1\nf 1 3 4\n");
+    ASSERT_EQ(mesh.texture_coordinates.size(), mesh.positions.size());
+    EXPECT_EQ(mesh.texture_coordinates[mesh.triangles.at(0).x], Imath::V2d(0.5, 0.5));
+    EXPECT_EQ(mesh.texture_coordinates[mesh.triangles.at(1).x], Imath::V2d(0.0, 0.0));
+}
+
+TEST_F(ObjMeshTest, AFileWithoutFacesIsAnEmptyMesh) {
+    for (const std::string text :
+         {"", "# nothing\n", "\n", "v 0 0 0\nv 1 0 0\nl 1 2\np 1\n", "vn 0 0 1\n", "o nothing\n"})
+        for (const bool face_normals : {false, true}) {
+            const auto mesh = load(text, face_normals);
+            EXPECT_TRUE(mesh.triangles.empty() && mesh.positions.empty()) << text;
+        }
+}
+
+TEST_F(ObjMeshTest, BlanksTabsAndOtherLinesChangeNothing) {
+    const auto plain = load(square + "f 1 2 3\nf 1 3 4\n");
+    for (const std::string& text : std::vector<std::string>{
+             "v\t0 0\t0  \n  v 1 0 0\t\nv 1 1 0\nv 0 1 0\nf\t1 2\t3 \t\n \tf 1  3 4   \n",
+             "mtllib a.mtl b.mtl\ng\ng a b\ns off\ns 1\nusemtl\nusemtl c\n" + square +
+                 "l 1 2\np 1\nf 1 2 3\nmg 0\nf 1 3 4\n",
+             square + "f -4 -3 -2\nf -4 3 -1", "\xef\xbb\xbf" + square + "f 1 2 3\r\n\r\nf 1 3 4\r\n"}) {
+        const auto mesh = load(text);
+        EXPECT_EQ(mesh.positions, plain.positions) << text;
+        EXPECT_EQ(mesh.triangles, plain.triangles) << text;
+    }
+}
+
+TEST_F(ObjMeshTest, FacesHaveAnyNumberOfCorners) {
+    std::string circle, corners = "f";
+    for (int i = 0; i < 1000; ++i) {
+        circle += "v " + std::to_string(std::cos(2.0 * pi * i / 1000.0)) + " " +
+                  std::to_string(std::sin(2.0 * pi * i / 1000.0)) + " 0\n";
+        corners += " " + std::to_string(i + 1);
+    }
+    const auto mesh = load(circle + corners + "\n");
+    EXPECT_EQ(mesh.triangles.size(), 998u);
+    EXPECT_NEAR(area_of(mesh), pi, 1e-4);
 }
 
 TEST_F(ObjMeshTest, DegenerateFacesGiveNoNormalThatIsNotANumber) {

@@ -1,0 +1,36 @@
+// Wavefront OBJ meshes as their file has them, before they are placed in a scene.
+
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "scene/description.h"
+#include "scene/xml_reader.h"
+
+namespace photonlab {
+
+struct ObjOptions {
+    bool face_normals = false;    ///< leave the file's normals out
+    bool flip_v = false;          ///< turn texture coordinates over: v is 1 - v
+    bool separate_groups = true;  ///< 0.6 only: groups and materials share no vertices
+    MitsubaFamily family = MitsubaFamily::Version3;
+};
+
+struct ObjMesh {
+    /// All objects as one, polygons cut into fans around their first corner. Vertices with different normals or texture
+    /// coordinates are kept apart. A corner without a normal, or with one of length 0, has its triangle's, and one
+    /// without texture coordinates has (0, 0), wherever others have some: in the whole file, or in 0.6 in its group.
+    /// Where none has any, normals are 0 and texture coordinates not a number; where that is the whole file, empty.
+    MeshDescription mesh;
+    std::string material_library;  ///< what the last mtllib names, or ""
+};
+
+/// Reads the file. Throws InputError with file and line.
+ObjMesh read_obj_mesh(const std::filesystem::path& file, const ObjOptions& options);
+
+/// Computes the normals that are not there, as Mitsuba does: face normals weighted by the angle at the vertex.
+/// [Thuermer & Wuethrich 1998, "Computing Vertex Normals from Polygonal Facets"]
+void fill_in_normals(MeshDescription& mesh);
+
+}  // namespace photonlab
