@@ -21,11 +21,10 @@ try:
     import style
     import tables
     from bias_variance import COMPONENT_TITLES
-    from files import InputError
     from matplotlib import lines, patches
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, scipy, pandas, matplotlib and OpenImageIO (on "
-          "Debian: /usr/bin/python3 with python3-scipy, python3-pandas, python3-matplotlib and python3-openimageio)",
+          "Debian: /usr/bin/python3 with python3-scipy, python3-pandas, python3-xxhash, python3-matplotlib and python3-openimageio)",
           file=sys.stderr)
     sys.exit(2)
 
@@ -35,11 +34,8 @@ LINE = {"color": "black", "marker": "o", "markeredgecolor": "white", "markeredge
 
 def read_best(results):
     """Rows of RESULTS/best-alphas.csv: best alpha and paths as numbers, candidates as lists of them."""
-    file = Path(results) / "best-alphas.csv"
-    if not files.is_there(file):
-        raise InputError(f"{file}: is not there; run fits.py on an experiment that sweeps alpha")
-    rows = tables.read_table(file)
-    tables.require_columns(file, rows, fits.BEST_COLUMNS, "run fits.py again")
+    file = results.folder / "best-alphas.csv"
+    rows = tables.read_derived(results, file.name, fits.BEST_COLUMNS, "fits.py on an experiment that sweeps alpha")
     for column in ["paths_emitted", "best_alpha"]:
         rows[column] = tables.to_numbers(file, rows[column])
     rows["candidates"] = [[float(alpha) for alpha in text.split(";") if alpha] for text in rows["candidates"]]
@@ -62,7 +58,7 @@ def families_of(rows):
 
 def draw_panel(axes, rows, alphas):
     """One sweep in one region: a box of candidates about each pass, and the best alphas where it is not all of them."""
-    rows = rows[rows["candidates"].map(len) > 0].sort_values("paths_emitted")
+    rows = rows.sort_values("paths_emitted")
     paths = rows["paths_emitted"].to_numpy()
     steps = numpy.diff(numpy.log(paths)) / 2 if len(paths) > 1 else numpy.array([0.3])
     edges = numpy.exp(numpy.append(numpy.log(paths) - [*steps[:1], *steps][:len(paths)], math.log(paths[-1]) + steps[-1]))
@@ -73,9 +69,9 @@ def draw_panel(axes, rows, alphas):
 
 
 def draw_scene(rows):
-    """The figure of one scene; None when its records have no paths (a method without photons has no alpha either)."""
+    """The figure of one scene; None when no alpha has a probability, which takes three groups of seeds."""
     rows = rows[rows["component"] == ("gathered" if (rows["component"] == "gathered").any() else "total")]
-    rows = rows[rows["paths_emitted"] > 0]
+    rows = rows[(rows["paths_emitted"] > 0) & (rows["candidates"].map(len) > 0)]
     if rows.empty:
         return None
     families, regions = families_of(rows), list(dict.fromkeys(rows["region"]))
@@ -108,13 +104,13 @@ def main(arguments):
                                      epilog="Writes RESULTS_DIR/figures/best-alpha-SCENE.png and .pdf.\n\n" +
                                      __doc__.split("\n\n", 1)[1])
     parser.add_argument("results", metavar="RESULTS_DIR", type=Path, help="folder of an experiment's results")
-    results = parser.parse_args(arguments).results
+    results = records.read(parser.parse_args(arguments).results)
     for scene, rows in read_best(results).groupby("scene", sort=False):
         figure = draw_scene(rows)
         if figure is None:
-            print(f"{scene}: no paths were recorded, so there is nothing to draw against")
+            print(f"{scene}: no alpha has a probability, which takes three seeds, so there is nothing to draw")
             continue
-        for file in style.save(figure, results, f"best-alpha-{records.file_name(scene)}"):
+        for file in style.save(figure, results.folder, f"best-alpha-{records.file_name(scene)}", results.hash):
             print(file)
     return 0
 

@@ -28,7 +28,7 @@ try:
     from matplotlib.transforms import blended_transform_factory
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, scipy, pandas, matplotlib and OpenImageIO (on "
-          "Debian: /usr/bin/python3 with python3-scipy, python3-pandas, python3-matplotlib and python3-openimageio)",
+          "Debian: /usr/bin/python3 with python3-scipy, python3-pandas, python3-xxhash, python3-matplotlib and python3-openimageio)",
           file=sys.stderr)
     sys.exit(2)
 
@@ -44,12 +44,9 @@ THEORY_LINES = {"squared_bias": {"linewidth": 0.7, "linestyle": (0, (1, 1.5)), "
 
 def read_decomposition(results):
     """Rows of RESULTS/decomposition.csv with estimates and errors as numbers, NaN where there are none."""
-    file = Path(results) / "decomposition.csv"
-    if not files.is_there(file):
-        raise InputError(f"{file}: is not there; run decomposition.py first")
-    rows = tables.read_table(file)
+    file = results.folder / "decomposition.csv"
     numbers = ["pass", "seeds", "groups", "paths_emitted", "seconds", *(column for quantity in TITLES for column in [quantity, f"{quantity}_error"])]
-    tables.require_columns(file, rows, ["scene", "point", "component", "region", *numbers], "run decomposition.py again")
+    rows = tables.read_derived(results, file.name, ["scene", "point", "component", "region", *numbers], "decomposition.py")
     for column in numbers:
         rows[column] = tables.to_numbers(file, rows[column], whole=column in ["pass", "seeds", "groups"])
     return rows
@@ -150,6 +147,8 @@ def notes(rows, component, any_theory, against):
         text.append("Thin lines: predicted for these passes, through the measured value at the window's first.")
     if rows["mse"].notna().any() and (rows["reference_floor"] == "").any():
         text.append("The reference has no second half: its own noise is in squared bias and MSE.")
+    elif rows["mse"].notna().any():
+        text.append("All without the reference's noise.")
     if (rows["direct"] == "photons").any():
         text.append("Photons carry direct light.")
     if against == "photons" and rows["paths_emitted"].isna().any():
@@ -228,12 +227,12 @@ def main(arguments):
                         "the light paths emitted")
     parser.add_argument("--roots", action="store_true", help="draw RMSE and the roots of variance and squared bias, in radiance")
     options = parser.parse_args(arguments)
-    results = options.results
-    recorded = records.read_records(results)
+    results = records.read(options.results)
+    recorded = results.rows
     rows = read_decomposition(results)
     unknown = set(rows["point"]) - set(recorded["run"].map(decomposition.point_of))
     if unknown:
-        raise InputError(f"{results / 'decomposition.csv'}: {min(unknown)} is not in iterations.csv; run "
+        raise InputError(f"{results.folder / 'decomposition.csv'}: {min(unknown)} is not in iterations.csv; run "
                                   "decomposition.py again")
     labels = records.methods_in_order(recorded)
     for scene, scene_rows in rows.groupby("scene", sort=False):
@@ -244,7 +243,7 @@ def main(arguments):
             print(f"{scene}: nothing is resolved, so there is nothing to draw")
             continue
         extra = ("-roots" if options.roots else "") + (f"-{options.against}" if options.against != "passes" else "")
-        for file in style.save(figure, results, f"bias-variance-{records.file_name(scene)}{extra}"):
+        for file in style.save(figure, results.folder, f"bias-variance-{records.file_name(scene)}{extra}", results.hash):
             print(file)
     return 0
 

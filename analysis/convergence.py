@@ -20,7 +20,7 @@ try:
     from matplotlib.transforms import blended_transform_factory
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas and matplotlib (on Debian: "
-          "/usr/bin/python3 with python3-pandas and python3-matplotlib)", file=sys.stderr)
+          "/usr/bin/python3 with python3-pandas, python3-xxhash and python3-matplotlib)", file=sys.stderr)
     sys.exit(2)
 
 COMPONENT_TITLES = {"total": "whole image", "gathered": "gathered light alone"}
@@ -96,8 +96,7 @@ def notes(rows, column, floors):
         text.append(f"Line: root of the mean {kind} over {count} seeds; band: least to largest seed.")
     else:
         text.append(f"Line: root of the {kind} of one seed.")
-    if column == "mse":
-        text.append("The reference has no second half: its own noise is in every value.")
+    text.append(records.noise_note(rows))
     if floors:
         hidden = [f"{style.two_digits(floor)} ({COMPONENT_TITLES[component]})" for component, floor in floors.items()]
         text.append(f"Floor of the reference, below the axis: RMSE {', '.join(hidden)}.")
@@ -106,7 +105,7 @@ def notes(rows, column, floors):
     nonfinite = rows[(rows["component"] == "total") & (rows["nonfinite"] > 0)]
     if not nonfinite.empty:
         text.append(f"Up to {nonfinite['nonfinite'].max():.0f} pixels that are not finite are left out.")
-    return " ".join(text)
+    return " ".join(filter(None, text))
 
 
 def draw_scene(scene_rows, labels):
@@ -152,15 +151,15 @@ def main(arguments):
         epilog="Writes RESULTS_DIR/figures/convergence-SCENE.png and .pdf.\n\n" + __doc__.split("\n\n", 1)[1])
     parser.add_argument("results", metavar="RESULTS_DIR", type=Path,
                         help="folder of an experiment's results: iterations.csv is in it")
-    results = parser.parse_args(arguments).results
-    rows = records.read_records(results)
+    results = records.read(parser.parse_args(arguments).results)
+    rows = results.rows
     labels = records.methods_in_order(rows)
     for scene, scene_rows in rows.groupby("scene", sort=False):
         figure = draw_scene(scene_rows, [label for label in labels if label in set(scene_rows["method"])])
         if figure is None:
             print(f"{scene}: no errors were recorded (was there a reference?), so no convergence plot")
             continue
-        for file in style.save(figure, results, f"convergence-{records.file_name(scene)}"):
+        for file in style.save(figure, results.folder, f"convergence-{records.file_name(scene)}", results.hash):
             print(file)
     return 0
 

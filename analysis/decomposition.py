@@ -26,6 +26,7 @@ from pathlib import Path
 
 try:
     import files
+    import kept_files
     import numpy
     import pictures
     import records
@@ -33,7 +34,7 @@ try:
     from files import InputError
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas and OpenImageIO (on Debian: "
-          "/usr/bin/python3 with python3-pandas and python3-openimageio)", file=sys.stderr)
+          "/usr/bin/python3 with python3-pandas, python3-xxhash and python3-openimageio)", file=sys.stderr)
     sys.exit(2)
 
 QUANTITIES = ["variance", "squared_bias", "mse"]
@@ -47,6 +48,7 @@ class Ensemble:
     description: dict    # ensemble.json
     seeds: list          # a list a group
     layers: list         # {layer: array (height, width, 3)} a group: means over its seeds
+    judged: dict         # what names its reference: ensemble.json, or better run.json, which says which one it was then
 
     @property
     def point(self):
@@ -66,11 +68,15 @@ class Ensemble:
         return sum(layers[part] for part in parts)
 
 
-def read_slot(file):
-    """(seeds, {layer: mean over them}) of one file of sums."""
-    spec, pixels = pictures.read_image(file)
+def read_slot(file, key):
+    """(seeds, {layer: mean over them}) of one file of sums. `key` is that of the sums beside it, if they have checksums; None where
+    they have none."""
+    advice = "remove it and run the experiment again, which makes the runs of its seeds anew"
+    spec, pixels = pictures.read_image(file, lambda stream: key and kept_files.require_seal(file, stream, advice))
+    if key and str(spec.getattribute("photonlab.key")) != key:
+        raise InputError(f"{file}: its sums are of other settings than ensemble.json beside it; run the experiment again")
     seeds = str(spec.getattribute("photonlab.seeds") or "").split()
-    if not seeds or not all(seed.isdecimal() for seed in seeds):
+    if not seeds or not all(seed.isdecimal() and len(seed) < 21 for seed in seeds):
         raise InputError(f"{file}: expected sums of images with the attribute photonlab.seeds")
     places = {}
     for index, name in enumerate(spec.channelnames):
@@ -101,25 +107,27 @@ DESCRIPTION = {
 }
 
 
-def read_description(folder):
+def read_description(results, folder):
     """ensemble.json, checked."""
-    file = Path(folder) / "ensemble.json"
-    description = files.read_json(file)
+    file = folder / "ensemble.json"
+    description = kept_files.read_json(file, "run the experiment again, which writes it anew", must_be_checked=results.has_stamps)
     if not isinstance(description, dict):
         raise InputError(f"{file}: is not the description of an ensemble")
     for key, (is_sound, expected) in DESCRIPTION.items():
         if key not in description or not is_sound(description[key]):
             raise InputError(f"{file}: {key}: expected {expected}")
-    if not isinstance(description.get("working_directory", ""), str):
-        raise InputError(f"{file}: working_directory: expected a path")
+    records.check_reference(file, description)
+    if description["point"] != folder.name:
+        raise InputError(f"{file}: point: expected the name of its folder")
     return description
 
 
-def read_ensemble(folder):
-    description = read_description(folder)
+def read_ensemble(results, folder):
+    description = read_description(results, folder)
+    key = description.get("key") if results.has_stamps else None
     seeds, layers = [], []
-    for slot in sorted(Path(folder).glob("slot-*.exr")):
-        own_seeds, own_layers = read_slot(slot)
+    for slot in sorted(folder.glob("slot-*.exr")):
+        own_seeds, own_layers = read_slot(slot, key)
         expected = {"emission", *(f"pass-{number:06}-{layer}" for number in description["passes"]
                                   for layer in ["direct", "gathered"])}
         if set(own_layers) != expected:
@@ -132,30 +140,30 @@ def read_ensemble(folder):
         raise InputError(f"{folder}: expected at least two seeds, found {len(seeds)}")
     all_seeds = [seed for group in seeds for seed in group]
     if len(set(all_seeds)) < len(all_seeds):
-        raise InputError(f"{folder}: expected each seed in one slot; remove the folder and run the experiment again")
-    return Ensemble(Path(folder), description, seeds, layers)
+        raise InputError(f"{folder}: expected each seed in one slot; move the folder away and run the experiment again, which makes "
+                         "its seeds anew")
+    return Ensemble(folder, description, seeds, layers, description)
 
 
 def read_ensembles(results):
     """Ensembles of a results folder, one after another: only one is in memory at a time."""
-    folders = sorted((Path(results) / "ensembles").glob("*/"))
+    folders = sorted((results.folder / "ensembles").glob("*/"))
     if not folders:
-        raise InputError(f"{results}: has no ensembles; expected an experiment with decomposition = true")
+        raise InputError(f"{results.folder}: has no ensembles; expected an experiment with decomposition = true")
     for folder in folders:
-        yield read_ensemble(folder)
+        yield read_ensemble(results, folder)
 
 
 def read_halves(ensemble, results, component):
     """[A, B] or [image] of the reference's component; empty where it does not have it or there is no reference."""
-    if ensemble.description["reference"] is None:
-        return []
     carried = ensemble.description["photons_carry_direct"]
-    found = records.reference_files(results, ensemble.description)
-    if not found:
-        raise InputError(f"{ensemble.folder}: its reference {ensemble.description['reference']['path']} is not there; "
-                                  "expected an EXR, or a folder of half_a.exr and half_b.exr")
-    halves = [pictures.read_component(file, component, carried) for file in found]
-    for file, half in zip(found, halves):
+    judge = records.reference_of(results, ensemble.judged)
+    if judge is None:
+        return []
+    if not judge.halves:
+        raise InputError(f"{ensemble.folder}: its reference {judge.path} {judge.why_not}; bring it back, or run the experiment again")
+    halves = [pictures.read_component(file, component, carried) for file in judge.halves]
+    for file, half in zip(judge.halves, halves):
         if half is not None and half.shape != ensemble.layers[0]["emission"].shape:
             raise InputError(f"{ensemble.folder}: its reference is of another size than its images: {file}")
     return halves if all(half is not None for half in halves) else []
@@ -253,7 +261,7 @@ def standard_errors(moments):
     return numpy.hypot(seeds, [0, reference, reference])
 
 
-COLUMNS = ["experiment", "scene", "point", *records.SETTINGS, "pass", "component", "region", "pixels", "seeds", "groups",
+COLUMNS = ["experiment", "scene", "point", *records.TABLE_SETTINGS, "pass", "component", "region", "pixels", "seeds", "groups",
            "paths_emitted", "seconds", "variance", "variance_error", "squared_bias", "squared_bias_error", "mse", "mse_error",
            "reference_floor"]
 
@@ -263,15 +271,22 @@ def point_of(run):
     return run.rpartition("_seed-")[0]
 
 
-def rows_of(ensemble, recorded):
+def rows_of(ensemble, results):
     """The records of a point's runs; None for a point that the experiment does not have any more."""
-    rows = recorded[recorded["run"].map(point_of) == ensemble.point]
+    rows = results.rows[results.rows["run"].map(point_of) == ensemble.point]
     if rows.empty:
         print(f"{ensemble.folder}: has no runs in iterations.csv; left out")
         return None
     summed = {seed for group in ensemble.seeds for seed in group}
     if not set(rows["seed"].astype(int)) <= summed:
         raise InputError(f"{ensemble.folder}: lacks seeds that iterations.csv has; run the experiment again")
+    for run in rows["run"].unique():
+        if not results.has_stamps and not results.has_run(run):
+            continue
+        ensemble.judged = results.run(run).description
+        named = ensemble.judged.get("ensemble")
+        if results.has_stamps and not (isinstance(named, dict) and named.get("key") == ensemble.description.get("key")):
+            raise InputError(f"{ensemble.folder}: holds sums of other settings than run {run}; run the experiment again")
     return rows
 
 
@@ -292,7 +307,7 @@ def table_of(ensemble, results, own):
             paths = pandas_mean(of_pass["paths_emitted"])
             table.append({
                 "experiment": first["experiment"], "scene": first["scene"], "point": ensemble.point,
-                **{column: first[column] for column in records.SETTINGS}, "pass": number, "component": component,
+                **records.table_settings(own), "pass": number, "component": component,
                 "region": region, "pixels": moments.pixels, "seeds": int(moments.counts.sum()),
                 "groups": len(moments.counts), "paths_emitted": paths, "seconds": repr(float(of_pass["seconds"].mean())),
                 "reference_floor": repr(moments.floor) if has_halves else "",
@@ -327,9 +342,9 @@ def write_images(ensemble, results, number):
     mean = numpy.tensordot(counts / counts.sum(), images, axes=1)
     variance = numpy.tensordot(counts, (images - mean) ** 2, axes=1) / (len(counts) - 1)
     bias = mean - sum(halves) / len(halves)
-    file = Path(results) / "decomposition" / ensemble.point / f"pass-{number:06}.exr"
+    file = results.folder / "decomposition" / ensemble.point / f"pass-{number:06}.exr"
     return pictures.write_exr(file, [f"{prefix}{channel}" for prefix in ["", "bias.", "variance."] for channel in "RGB"],
-                              numpy.concatenate([bias, bias, variance], axis=2))
+                              numpy.concatenate([bias, bias, variance], axis=2), results.hash)
 
 
 @files.command
@@ -342,16 +357,15 @@ def main(arguments):
     parser.add_argument("--images", type=int, metavar="PASS", help="the recorded pass whose images are written (default: the "
                         "last)")
     options = parser.parse_args(arguments)
-    results = options.results
-    recorded = records.read_records(results)
+    results = records.read(options.results)
     table = []
     for ensemble in read_ensembles(results):
-        own = rows_of(ensemble, recorded)
+        own = rows_of(ensemble, results)
         if own is None:
             continue
         table += table_of(ensemble, results, own)
         write_images(ensemble, results, pass_of_images(ensemble, options.images))
-    print(tables.write_table(results / "decomposition.csv", COLUMNS, table))
+    print(tables.write_derived(results, "decomposition.csv", COLUMNS, table))
     return 0
 
 

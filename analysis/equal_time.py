@@ -29,7 +29,7 @@ try:
     from matplotlib import patches
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, scipy, pandas, matplotlib and OpenImageIO (on "
-          "Debian: /usr/bin/python3 with python3-scipy, python3-pandas, python3-matplotlib and python3-openimageio)", file=sys.stderr)
+          "Debian: /usr/bin/python3 with python3-scipy, python3-pandas, python3-xxhash, python3-matplotlib and python3-openimageio)", file=sys.stderr)
     sys.exit(2)
 
 COLUMNS = ["scene", "component", "region", "seconds", "method", "pass", "mse", "rmse", "note"]
@@ -111,7 +111,7 @@ def table_of(scene, curves):
 
 def read_split(results, recorded):
     """Rows of decomposition.csv with the method that each point is; None where the file is not there."""
-    if not files.is_there(results / "decomposition.csv"):
+    if not files.is_there(results.folder / "decomposition.csv"):
         return None
     rows = bias_variance.read_decomposition(results)
     method_of = recorded.assign(point=recorded["run"].map(decomposition.point_of)).drop_duplicates("point").set_index("point")
@@ -120,8 +120,8 @@ def read_split(results, recorded):
 
 def regions_of(results, scene):
     """{name: (left, top, right, bottom)} of a scene's regions, from its ensembles; {} where there are none."""
-    for folder in sorted((results / "ensembles").glob("*/")):
-        description = decomposition.read_description(folder)
+    for folder in sorted((results.folder / "ensembles").glob("*/")):
+        description = decomposition.read_description(results, folder)
         if description["scene"] == scene:
             return description["regions"]
     return {}
@@ -143,9 +143,8 @@ def nearest_snapshot(results, rows, seconds):
     """(image, text, file) of the recorded pass nearest to the budget, of the lowest seed."""
     of_seed = rows[(rows["seed"] == rows["seed"].min()) & (rows["component"] == "total")]
     run = of_seed["run"].iloc[0]
-    record = records.read_run(results, run)
     times = of_seed.set_index("pass")["seconds"]
-    by_pass = {number: file for number, file in records.snapshot_files(results, run, record).items() if times.get(number, 0) > 0}
+    by_pass = {number: file for number, file in results.run(run).snapshots.items() if times.get(number, 0) > 0}
     if not by_pass:
         return None
     number = min(by_pass, key=lambda number: abs(math.log(times[number] / seconds)))
@@ -166,8 +165,8 @@ def insets_of(results, scene, reference, is_light):
 
 def draw_scene(results, scene, rows, labels, table, seconds):
     """Pictures at the budget with insets; None without snapshots or a reference."""
-    record = records.read_run(results, rows["run"].iloc[0])
-    halves = records.reference_files(results, record)
+    judge = records.reference_of(results, results.run(rows["run"].iloc[0]).description)
+    halves = judge.halves if judge else []
     reference = pictures.read_reference(halves, "total", False)
     shown = [(label, nearest_snapshot(results, rows[rows["method"] == label], seconds)) for label in labels]
     shown = [(label, found) for label, found in shown if found]
@@ -209,7 +208,7 @@ def draw_scene(results, scene, rows, labels, table, seconds):
             axes.spines[:].set_visible(True)
         grid[0][column].set_title(label, fontsize=9)
         grid[0][column].set_xlabel(text, fontsize=7.5)
-    figure.suptitle(f"{scene}: {seconds:g} s", fontsize=9.5, x=0.01, ha="left")
+    figure.suptitle(f"{scene}: {seconds:g} s. {records.noise_note(rows)}", fontsize=9.5, x=0.01, ha="left")
     return figure
 
 
@@ -220,8 +219,8 @@ def main(arguments):
                                      epilog="Writes RESULTS_DIR/equal-time.csv and figures/equal-time-SCENE, .png and "
                                      ".pdf.\n\n" + __doc__.split("\n\n", 1)[1])
     parser.add_argument("results", metavar="RESULTS_DIR", type=Path, help="folder of an experiment's results")
-    results = parser.parse_args(arguments).results
-    recorded = records.read_records(results)
+    results = records.read(parser.parse_args(arguments).results)
+    recorded = results.rows
     labels = records.methods_in_order(recorded)
     split = read_split(results, recorded)
     table = []
@@ -240,9 +239,9 @@ def main(arguments):
         if figure is None:
             print(f"{scene}: no snapshots, so no pictures")
             continue
-        for file in style.save(figure, results, f"equal-time-{records.file_name(scene)}"):
+        for file in style.save(figure, results.folder, f"equal-time-{records.file_name(scene)}", results.hash):
             print(file)
-    print(tables.write_table(results / "equal-time.csv", COLUMNS, table))
+    print(tables.write_derived(results, "equal-time.csv", COLUMNS, table))
     return 0
 
 

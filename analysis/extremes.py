@@ -30,7 +30,7 @@ try:
     from matplotlib import lines
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas, matplotlib and OpenImageIO (on Debian: "
-          "/usr/bin/python3 with python3-pandas, python3-matplotlib and python3-openimageio)", file=sys.stderr)
+          "/usr/bin/python3 with python3-pandas, python3-xxhash, python3-matplotlib and python3-openimageio)", file=sys.stderr)
     sys.exit(2)
 
 TOLERANCE = 1e-3
@@ -68,12 +68,13 @@ def axis_of(scene):
 
 def images(results):
     """{(scene, integrator or branch cut-off): [last image of each seed]}"""
-    runs = records.read_records(results).drop_duplicates("run")
+    runs = results.rows.drop_duplicates("run")
     found = {}
     for row in runs.sort_values("seed").itertuples():
-        by_pass = records.snapshot_files(results, row.run, records.read_run(results, row.run))
+        run = results.run(row.run)
+        by_pass = run.snapshots
         if not by_pass:
-            raise InputError(f"{Path(results) / 'runs' / row.run}: has no snapshot; run the experiment again")
+            raise InputError(f"{run.folder}: has no snapshot; run the experiment again")
         image = pictures.read_component(by_pass[max(by_pass)], "total")
         method = row.branch_cutoff if row.integrator == "path" else row.integrator
         found.setdefault((row.scene, method), []).append(image)
@@ -219,12 +220,13 @@ def main(arguments):
     parser.add_argument("results", metavar="RESULTS", type=Path, help="of experiments/extremes.toml, with update.csv")
     parser.add_argument("rays", metavar="RESULTS_RAYS", type=Path, help="of experiments/extremes-rays.toml")
     chosen = parser.parse_args(arguments)
-    found = images(chosen.results)
-    rows = sorted(photon_errors(found) + ray_errors(images(chosen.rays)) + update_errors(chosen.results / "update.csv"))
+    results = records.read(chosen.results)
+    found = images(results)
+    rows = sorted(photon_errors(found) + ray_errors(images(records.read(chosen.rays))) + update_errors(chosen.results / "update.csv"))
     table = [dict(zip(COLUMNS, (axis, f"{value:.8g}", method, f"{error:.3g}"))) for axis, value, method, error in rows]
     print("\n".join(plain_answers(found) + statements(rows)))
-    print(tables.write_table(chosen.results / "extremes.csv", COLUMNS, table))
-    for file in style.save(draw(rows), chosen.results, "extremes"):
+    print(tables.write_derived(results, "extremes.csv", COLUMNS, table))
+    for file in style.save(draw(rows), results.folder, "extremes", results.hash):
         print(file)
     return 0
 

@@ -44,15 +44,15 @@ try:
     from scipy import stats
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, scipy, pandas and OpenImageIO (on Debian: "
-          "/usr/bin/python3 with python3-scipy, python3-pandas and python3-openimageio)", file=sys.stderr)
+          "/usr/bin/python3 with python3-scipy, python3-pandas, python3-xxhash and python3-openimageio)", file=sys.stderr)
     sys.exit(2)
 
 WIDEST = 1.0      # interval of a slope that says anything
 RESOLVED = 2.0    # standard errors above 0
-FIT_COLUMNS = ["experiment", "scene", "point", *records.SETTINGS, "component", "region", "quantity", "first_pass",
+FIT_COLUMNS = ["experiment", "scene", "point", *records.TABLE_SETTINGS, "component", "region", "quantity", "first_pass",
                "last_pass", "passes", "seeds", "slope", "low", "high", "asymptote", "edge", "predicted", "predicted_edge", "verdict"]
 FAMILY = [column for column in records.SETTINGS if column != "alpha"]    # what alphas that are compared have in common
-BEST_COLUMNS = ["experiment", "scene", *FAMILY, "component", "region", "pass", "paths_emitted", "best_alpha", "probability",
+BEST_COLUMNS = ["experiment", "scene", *FAMILY, "threads", "component", "region", "pass", "paths_emitted", "best_alpha", "probability",
                 "candidates", "mse", "runner_up", "difference", "difference_error", "verdict"]
 DRAWS = 2000       # of groups of seeds
 EDGE_STEPS = 2000  # of the integral over the distance to an edge
@@ -259,7 +259,7 @@ def fits_of(ensemble, own, moments, component, window):
             smooth, edge = asymptotes(first, component)[quantity]
             table.append({
                 "experiment": first["experiment"], "scene": first["scene"], "point": ensemble.point,
-                **{column: first[column] for column in records.SETTINGS}, "component": component, "region": region,
+                **records.table_settings(own), "component": component, "region": region,
                 "quantity": quantity, "first_pass": passes[0], "last_pass": passes[-1], "passes": len(passes),
                 "seeds": int(of_region[passes[0]].counts.sum()), "slope": text(found), "low": text(low), "high": text(high),
                 "asymptote": text(smooth), "edge": text(edge), "predicted": text(expected), "predicted_edge": text(at_edges),
@@ -317,7 +317,7 @@ def best_alphas(family, component):
         first = first_own.iloc[0]
         of_pass = first_own[(first_own["pass"] == number) & (first_own["component"] == component)]
         table.append({"experiment": first["experiment"], "scene": first["scene"],
-                      **{column: first[column] for column in FAMILY}, "component": component, "region": region,
+                      **{column: value for column, value in records.table_settings(first_own).items() if column != "alpha"}, "component": component, "region": region,
                       "pass": number, "paths_emitted": decomposition.pandas_mean(of_pass["paths_emitted"]),
                       "best_alpha": order[0], "probability": text(probabilities.get(order[0])),
                       "candidates": ";".join(candidates), "mse": text(least), "runner_up": order[1],
@@ -338,17 +338,17 @@ def main(arguments):
                         "the last, at least 4)")
     parser.add_argument("--to", dest="last", type=int, metavar="PASS", help="last pass of the window (default: the last)")
     options = parser.parse_args(arguments)
-    recorded = records.read_records(options.results)
+    results = records.read(options.results)
     table, families = [], {}
-    for ensemble in decomposition.read_ensembles(options.results):
-        own = decomposition.rows_of(ensemble, recorded)
+    for ensemble in decomposition.read_ensembles(results):
+        own = decomposition.rows_of(ensemble, results)
         if own is None:
             continue
         first = own.iloc[0]
         first_pass, last_pass = default_window(ensemble.description["passes"])
         window = (options.first or first_pass, options.last or last_pass)
         # Emission has neither bias nor variance.
-        moments = {component: decomposition.moments_of(ensemble, options.results, component)
+        moments = {component: decomposition.moments_of(ensemble, results, component)
                    for component in records.COMPONENTS if component != "emission"}
         for component in moments:
             if not moments[component]:
@@ -358,13 +358,13 @@ def main(arguments):
                 rest = tuple(first[column] for column in ["scene", *FAMILY])
                 families.setdefault((rest, component), {})[first["alpha"]] = (own, ensemble.seeds,
                                                                               moments[component])
-    print(tables.write_table(options.results / "fits.csv", FIT_COLUMNS, table))
+    print(tables.write_derived(results, "fits.csv", FIT_COLUMNS, table))
     best = [row for (_, component), family in families.items() if len(family) > 1
             for row in best_alphas(family, component)]
     if best:
-        print(tables.write_table(options.results / "best-alphas.csv", BEST_COLUMNS, best))
+        print(tables.write_derived(results, "best-alphas.csv", BEST_COLUMNS, best))
     else:
-        files.remove_file(options.results / "best-alphas.csv")    # of earlier records
+        files.remove_file(results.folder / "best-alphas.csv")    # of earlier records
     return 0
 
 

@@ -17,7 +17,7 @@ try:
     from files import InputError
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas, matplotlib and OpenImageIO (on "
-          "Debian: /usr/bin/python3 with python3-pandas, python3-matplotlib and python3-openimageio)", file=sys.stderr)
+          "Debian: /usr/bin/python3 with python3-pandas, python3-xxhash, python3-matplotlib and python3-openimageio)", file=sys.stderr)
     sys.exit(2)
 
 ROW_ORDER = ["ppm", "photonmapper", "path"]    # the progressive method above its baseline
@@ -32,7 +32,8 @@ def caption(rows):
     parts = []
     if not rows["mse"].isna().all():
         value = rows[records.error_column(rows)].iloc[0]
-        parts.append(f"RMSE {style.two_digits(records.root(value))}" if value > 0 else "below resolution")
+        name = records.error_name(records.error_column(rows))
+        parts.append(f"{name} {style.two_digits(records.root(value))}" if value > 0 else "below resolution")
     parts.append(f"{style.two_digits(rows['seconds'].iloc[0])} s")
     return ", ".join(parts)
 
@@ -57,9 +58,8 @@ def collect(results, scene, rows, labels):
         of_method = rows[rows["method"] == label]
         of_run = of_method[of_method["seed"] == of_method["seed"].min()]
         run = of_run["run"].iloc[0]
-        record = records.read_run(results, run)
         total = of_run[of_run["component"] == "total"]
-        images, by_pass = {}, records.snapshot_files(results, run, record)
+        images, by_pass = {}, results.run(run).snapshots
         for number, file in by_pass.items():
             of_pass = total[total["pass"] == number]
             if not of_pass.empty:
@@ -69,18 +69,18 @@ def collect(results, scene, rows, labels):
         else:
             print(f"{scene}: {label}: no snapshots, so not in the gallery")
         if reference is None and images:
-            halves, (snapshot, *_) = records.reference_files(results, record), by_pass.values()
-            reference = pictures.read_reference(halves, "total", False)
+            judge, (snapshot, *_) = records.reference_of(results, results.run(run).description), by_pass.values()
+            reference = pictures.read_reference(judge.halves, "total", False) if judge else None
             if reference is not None:
-                pictures.require_same_size(snapshot, next(iter(images.values()))[0], halves[0], reference)
+                pictures.require_same_size(snapshot, next(iter(images.values()))[0], judge.halves[0], reference)
                 exposure = pictures.exposure_for(lit_by_scene(reference, snapshot))
     if found and exposure is None:
         exposure = pictures.exposure_for(list(found[0][1].values())[-1][0])
     return found, reference, exposure
 
 
-def draw(scenes, given_exposure):
-    """The figure of [(scene, methods, reference, exposure)]."""
+def draw(scenes, given_exposure, note):
+    """The figure of [(scene, methods, reference, exposure)], with a note in small print below."""
     style.use()
     style.pyplot.rcParams["axes.grid"] = False
     passes = sorted({number for _, methods, *_ in scenes for _, images in methods for number in images})
@@ -88,7 +88,7 @@ def draw(scenes, given_exposure):
     columns = len(passes) + has_reference
     width = LEFT + columns * (CELL + GAP)
     rows = sum(len(methods) for _, methods, *_ in scenes)
-    height = TOP + rows * (CELL + TEXT) + len(scenes) * SCENE_GAP
+    height = TOP + rows * (CELL + TEXT) + len(scenes) * SCENE_GAP + (TEXT if note else 0)
     figure = style.pyplot.figure(figsize=(width, height))
 
     def add_picture(image, x, y, scale):
@@ -116,6 +116,7 @@ def draw(scenes, given_exposure):
                 add_picture(reference, LEFT + len(passes) * (CELL + GAP), y, scale)
             y += CELL + TEXT
         y += SCENE_GAP
+    figure.text(LEFT / width, 0.06 / height, note, fontsize=7, color="#333333")
     return figure
 
 
@@ -130,16 +131,17 @@ def main(arguments):
     parser.add_argument("--exposure", type=style.positive, metavar="E",
                         help="factor on radiance (default: for each scene, 97%% of what its lights light is below white)")
     options = parser.parse_args(arguments)
-    rows = records.read_records(options.results)
+    results = records.read(options.results)
+    rows = results.rows
     labels = records.methods_in_order(rows)
     scenes = []
     for scene, scene_rows in rows.groupby("scene", sort=False):
-        methods, reference, exposure = collect(options.results, scene, scene_rows, labels)
+        methods, reference, exposure = collect(results, scene, scene_rows, labels)
         if methods:
             scenes.append((scene, methods, reference, exposure))
     if not scenes:
-        raise InputError(f"{options.results}: no snapshots; expected some in the experiment file")
-    for file in style.save(draw(scenes, options.exposure), options.results, "gallery"):
+        raise InputError(f"{results.folder}: no snapshots; expected some in the experiment file")
+    for file in style.save(draw(scenes, options.exposure, records.noise_note(rows)), results.folder, "gallery", results.hash):
         print(file)
     return 0
 

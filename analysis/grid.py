@@ -18,7 +18,7 @@ try:
     from files import InputError
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas, matplotlib and OpenImageIO (on "
-          "Debian: /usr/bin/python3 with python3-pandas, python3-matplotlib and python3-openimageio)", file=sys.stderr)
+          "Debian: /usr/bin/python3 with python3-pandas, python3-xxhash, python3-matplotlib and python3-openimageio)", file=sys.stderr)
     sys.exit(2)
 
 CELL = 1.1    # inches
@@ -72,6 +72,7 @@ def draw_heat_map(scene, rows, across, down):
     axes.set_xlabel(records.axis_text(across))
     axes.set_ylabel(records.axis_text(down))
     axes.set_title(f"{scene}: RMSE at pass {rows['pass'].max():.0f} (radiance)", loc="left")
+    figure.supxlabel(records.noise_note(rows[rows["component"] == "total"]), fontsize=7, color="#333333", x=0.01, ha="left")
     return figure
 
 
@@ -79,10 +80,11 @@ def final_difference(results, rows):
     """Last snapshot minus reference of the lowest seed of these rows; None without a snapshot or a reference."""
     of_seed = rows[rows["seed"] == rows["seed"].min()]
     run = of_seed["run"].iloc[0]
-    record = records.read_run(results, run)
-    by_pass, halves = records.snapshot_files(results, run, record), records.reference_files(results, record)
-    if not by_pass or not halves:
+    by_pass = results.run(run).snapshots
+    judge = records.reference_of(results, results.run(run).description)
+    if not by_pass or not judge or not judge.halves:
         return None
+    halves = judge.halves
     image, reference = pictures.read_component(by_pass[max(by_pass)], "total"), pictures.read_reference(halves, "total", False)
     pictures.require_same_size(by_pass[max(by_pass)], image, halves[0], reference)
     return (image - reference).mean(axis=2)
@@ -126,8 +128,8 @@ def main(arguments):
                                      epilog="Writes RESULTS_DIR/figures/grid-SCENE and differences-SCENE, .png and .pdf."
                                      "\n\n" + __doc__.split("\n\n", 1)[1])
     parser.add_argument("results", metavar="RESULTS_DIR", type=Path, help="folder of an experiment's results")
-    results = parser.parse_args(arguments).results
-    recorded = records.read_records(results)
+    results = records.read(parser.parse_args(arguments).results)
+    recorded = results.rows
     for scene, rows in recorded.groupby("scene", sort=False):
         if rows["mse"].isna().all():
             print(f"{scene}: no errors were recorded (was there a reference?), so no grid")
@@ -138,7 +140,7 @@ def main(arguments):
             if figure is None:
                 print(f"{scene}: no snapshots, so no differences")
                 continue
-            for file in style.save(figure, results, f"{name}-{records.file_name(scene)}"):
+            for file in style.save(figure, results.folder, f"{name}-{records.file_name(scene)}", results.hash):
                 print(file)
     return 0
 

@@ -16,7 +16,7 @@ try:
     from matplotlib import lines
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas and matplotlib (on Debian: "
-          "/usr/bin/python3 with python3-pandas and python3-matplotlib)", file=sys.stderr)
+          "/usr/bin/python3 with python3-pandas, python3-xxhash and python3-matplotlib)", file=sys.stderr)
     sys.exit(2)
 
 MEASURED = ["paths_emitted", "map_bytes", "hit_point_bytes"]
@@ -82,17 +82,17 @@ def main(arguments):
                                      epilog="Writes RESULTS_DIR/figures/memory-SCENE.png and .pdf.\n\n" +
                                      __doc__.split("\n\n", 1)[1])
     parser.add_argument("results", metavar="RESULTS_DIR", type=Path, help="folder of an experiment's results")
-    results = parser.parse_args(arguments).results
-    recorded = records.read_records(results)
+    results = records.read(parser.parse_args(arguments).results)
+    recorded = results.rows
     for column in MEASURED:
-        recorded[column] = tables.to_numbers(results / "iterations.csv", recorded[column])
+        recorded[column] = tables.to_numbers(results.file, recorded[column])
     labels = records.methods_in_order(recorded)
     for scene, rows in recorded.groupby("scene", sort=False):
         figure = draw_scene(rows, [label for label in labels if label in set(rows["method"])])
         if figure is None:
             print(f"{scene}: no method emits photons, so there is nothing to draw")
             continue
-        for file in style.save(figure, results, f"memory-{records.file_name(scene)}"):
+        for file in style.save(figure, results.folder, f"memory-{records.file_name(scene)}", results.hash):
             print(file)
     return 0
 

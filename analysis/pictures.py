@@ -7,14 +7,17 @@ any of OpenEXR's compressions.
 import os
 
 import files
+import kept_files
 import numpy
 import OpenImageIO
 from files import InputError
 
 
-def read_image(file):
-    """(OpenImageIO's description, pixels in the file's own type: asked for floats, OpenImageIO would scale integers to [0, 1])."""
-    with files.opened(file) as stream:
+def read_image(file, check=lambda stream: None):
+    """(OpenImageIO's description, pixels in the file's own type: asked for floats, OpenImageIO would scale integers to [0, 1]).
+    `check` looks at the file first."""
+    with kept_files.opened(file) as stream:
+        check(stream)
         if os.fstat(stream.fileno()).st_size == 0:
             raise InputError(f"{file}: cannot be read as an image: it is empty")
         name = descriptor_name(stream.fileno())    # of what was opened, whatever the file is called
@@ -31,10 +34,12 @@ def read_image(file):
         return spec, pixels
 
 
-def write_exr(file, channels, pixels):
-    """Replaces the file by an OpenEXR image of floats: pixels (height, width, channels) with the channels' names."""
+def write_exr(file, channels, pixels, records):
+    """Replaces the file by an OpenEXR image of floats: pixels (height, width, channels) with the channels' names. An attribute says
+    the hash of the records that it was made from."""
     spec = OpenImageIO.ImageSpec(pixels.shape[1], pixels.shape[0], len(channels), "float")
     spec.channelnames = channels
+    spec.attribute("photonlab.records", records)
     with open(os.memfd_create("exr"), "rb") as memory:    # OpenImageIO wants a name to write to
         name = descriptor_name(memory.fileno())
         output = OpenImageIO.ImageOutput.create("exr")

@@ -19,7 +19,7 @@ try:
     from matplotlib import lines
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas and matplotlib (on Debian: "
-          "/usr/bin/python3 with python3-pandas and python3-matplotlib)", file=sys.stderr)
+          "/usr/bin/python3 with python3-pandas, python3-xxhash and python3-matplotlib)", file=sys.stderr)
     sys.exit(2)
 
 COLUMNS = ["schema", "experiment", "run", "scene", "seed", "probe", "x", "y", "pass", "radius", "photons", "density",
@@ -31,10 +31,10 @@ QUANTITIES = {"radius": "radius (scene units)", "photons": "photons", "density":
 
 def read_probes(results, labels_by_run):
     """Rows of RESULTS/probes.csv as numbers, with `method` and `radiance`, the mean of its channels."""
-    file = Path(results) / "probes.csv"
+    file = results.folder / "probes.csv"
     if not files.is_there(file):
         raise InputError(f"{file}: is not there; expected an experiment with probes")
-    rows = tables.read_table(file)
+    rows = tables.table_in(file, records.read_merged(results.folder, file.name)[0])
     tables.require_columns(file, rows, COLUMNS, f"expected those of schema {records.SCHEMA}")
     for column in NUMBERS:
         rows[column] = tables.to_numbers(file, rows[column])
@@ -87,8 +87,8 @@ def main(arguments):
                                      epilog="Writes RESULTS_DIR/figures/probes-SCENE.png and .pdf.\n\n" +
                                      __doc__.split("\n\n", 1)[1])
     parser.add_argument("results", metavar="RESULTS_DIR", type=Path, help="folder of an experiment's results")
-    results = parser.parse_args(arguments).results
-    recorded = records.read_records(results)
+    results = records.read(parser.parse_args(arguments).results)
+    recorded = results.rows
     labels = records.methods_in_order(recorded)
     first_rows = recorded.drop_duplicates("run").set_index("run")
     rows = read_probes(results, first_rows["method"].to_dict())
@@ -96,7 +96,7 @@ def main(arguments):
         of_seed = scene_rows[scene_rows["seed"] == scene_rows["seed"].min()]
         styles = style.method_styles(recorded, labels)
         figure = draw_scene(of_seed, labels, styles)
-        for file in style.save(figure, results, f"probes-{records.file_name(scene)}"):
+        for file in style.save(figure, results.folder, f"probes-{records.file_name(scene)}", results.hash):
             print(file)
     return 0
 

@@ -34,13 +34,13 @@ try:
     import tables
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas, matplotlib and OpenImageIO (on "
-          "Debian: /usr/bin/python3 with python3-pandas, python3-matplotlib and python3-openimageio)", file=sys.stderr)
+          "Debian: /usr/bin/python3 with python3-pandas, python3-xxhash, python3-matplotlib and python3-openimageio)", file=sys.stderr)
     sys.exit(2)
 
 HERE = Path(__file__).parent
 COMPONENT_NAMES = {"total": "whole image", "emission": "emission", "direct": "direct", "gathered": "gathered"}
 COUNTERS = ["paths_emitted", "photons_stored", "photons_gathered"]
-MEMORY = ["map_bytes", "hit_point_bytes", "peak_rss_mib"]
+KEPT = ["map_bytes", "hit_point_bytes"]
 DERIVED_TABLES = {"fits.csv": "Fits", "best-alphas.csv": "Best alphas",
                   "decomposition.csv": "Variance and squared bias"}
 LARGEST_HALF = 65504.0
@@ -103,25 +103,28 @@ def table(caption, note, groups, columns, rows):
 
 # What the records say.
 
-def read_runs(results, rows, missing):
-    """run.json by run, for the runs of the records that have one."""
-    runs, without = {}, []
-    for run in rows["run"].unique():
-        if files.is_there(results / "runs" / run / "run.json"):
-            runs[run] = records.read_run(results, run)
-        else:
-            without.append(run)
+def read_runs(results, missing):
+    """{name: run} of the runs of the records that have a run.json."""
+    names = results.rows["run"].unique()
+    without = [name for name in names if not results.has_run(name)]
     if without:
-        missing.append(f"No run.json, so neither settings nor images, of {len(without)} of {rows['run'].nunique()} "
+        missing.append(f"No run.json, so neither settings nor images, of {len(without)} of {len(names)} "
                        f"runs: {', '.join(without[:3])}{', …' if len(without) > 3 else '.'}")
-    return runs
+    return {name: results.run(name) for name in names if name not in without}
 
 
-def found(record, *keys):
+def found(run, *keys):
     """A value inside run.json as text; "" where there is none."""
+    value = run.description
     for key in keys:
-        record = record.get(key) if isinstance(record, dict) else None
-    return "" if record is None else str(record)
+        value = value.get(key) if isinstance(value, dict) else None
+    return "" if value is None else str(value)
+
+
+def found_number(run, key):
+    """A whole number inside run.json; 0 where there is none."""
+    value = run.description.get(key)
+    return value if isinstance(value, int) else 0
 
 
 def distinct(texts):
@@ -143,7 +146,15 @@ def rmse_cell(rows):
     return (three_digits(root) if value > 0 else "below resolution", root if value > 0 else 0.0)
 
 
-def result_tables(scene, rows, labels):
+def process_cell(rows, runs):
+    """The largest memory of the process, which is a run's own where it ran alone. `rows` are those of a method's last pass."""
+    together = max((found_number(runs[run], "runs_together") for run in rows["run"] if run in runs), default=1)
+    if together > 1:
+        return (f"with {together - 1} other{'s' * (together > 2)}", math.nan)
+    return number(rows["peak_rss_mib"].max())
+
+
+def result_tables(scene, rows, labels, runs):
     """Errors and costs of a scene's methods at their last passes, as two tables."""
     errors, costs = [], []
     for label in labels:
@@ -156,27 +167,27 @@ def result_tables(scene, rows, labels):
         present = [components.get(component, rows.iloc[:0]) for component in COMPONENT_NAMES]
         errors.append(start + [rmse_cell(of_component) for of_component in present] +
                       [number(of_component["relmse"].mean(skipna=False)) for of_component in present])
-        peaks = last[MEMORY].max() / [2 ** 20, 2 ** 20, 1]
         costs.append(start + [whole(last["seed"].nunique())] + [whole(last[counter].mean()) for counter in COUNTERS] +
-                     [number(peaks[column]) for column in MEMORY])
+                     [number(last[column].max() / 2 ** 20) for column in KEPT] + [process_cell(last, runs)])
     start = ["method", "pass", "seconds"]
     names = list(COMPONENT_NAMES.values())
-    biased = rows["mse"].notna().any() and records.error_column(rows) == "mse"
-    noise = "the reference's own noise is in the RMSE" if biased else ""
-    return (table(f"{scene}: errors of the last pass", noise, [("", 3), ("RMSE", 4), ("relMSE", 4)],
+    judged = rows["mse"].notna().any()
+    noise = "" if judged else "there is no reference, so there are none"
+    of_noise = "without" if records.error_column(rows) == "mse_unbiased" else "with"
+    groups = [("", 3), (f"RMSE, {of_noise} the reference's noise", 4), ("relMSE, with its noise", 4)]
+    return (table(f"{scene}: errors of the last pass", noise, groups if judged else [("", 3), ("RMSE", 4), ("relMSE", 4)],
                   start + names + names, errors) +
             table(f"{scene}: costs of a seed up to there", "", [("", 4), ("photons", 3), ("largest memory, MiB", 3)],
                   start + ["seeds", "paths emitted", "stored", "gathered", "photon map", "hit points", "process"],
                   costs))
 
 
-def derived_table(file, title, recorded):
+def derived_table(name, title, rows, recorded):
     """A CSV that another tool of the analysis wrote. Settings are named by the method that `recorded` gives them, and
     what is the same in all rows is said once, above."""
-    rows = tables.read_table(file)
     notes = []
-    if file.name == "decomposition.csv" and "pass" in rows.columns and not rows.empty:
-        passes = tables.to_numbers(file, rows["pass"], whole=True)
+    if name == "decomposition.csv" and "pass" in rows.columns and not rows.empty:
+        passes = tables.to_numbers(name, rows["pass"], whole=True)
         owner = [rows[column] for column in ["scene", "point"] if column in rows.columns]
         last = passes.groupby(owner).transform("max") if owner else passes.max()
         rows = rows[passes == last]
@@ -186,7 +197,7 @@ def derived_table(file, title, recorded):
         known = recorded[[*settings, "method"]].drop_duplicates()
         methods = rows[settings].merge(known, on=settings, how="left")["method"]
         rows = rows.assign(point=methods.fillna("").to_numpy()).rename(columns={"point": "method"})
-        rows = rows.drop(columns=records.SETTINGS)
+        rows = rows.drop(columns=records.TABLE_SETTINGS, errors="ignore")
     rows = rows[[column for column in rows.columns if (rows[column] != "").any()]]
     if len(rows.drop_duplicates()) > 1:
         same = [column for column in rows.columns if rows[column].nunique() == 1]
@@ -196,8 +207,8 @@ def derived_table(file, title, recorded):
                                                     for column, value in zip(same, values)))
         rows = rows.drop(columns=same)
     if rows.empty:
-        return f"<p>{escape(file.name)} has no rows.</p>"
-    return table(f"{title} ({file.name})", "; ".join(notes), [], list(rows.columns),
+        return f"<p>{escape(name)} has no rows.</p>"
+    return table(f"{title} ({name})", "; ".join(notes), [], list(rows.columns),
                  list(zip(*(cells(rows[column]) for column in rows.columns))))
 
 
@@ -211,44 +222,39 @@ def encoded(image, scale):
     return base64.b64encode(zlib.compress(planes.T.tobytes(), 9)).decode()
 
 
-def snapshots(results, rows, labels, runs, missing, name, seeds):
+def snapshots(rows, labels, runs, missing, name, seeds):
     """[(method, pass, seed, layers, captions by component, file)] of each method's lowest seeds that have snapshots."""
-    shown = []
+    shown, without = [], []
     for label in labels:
         of_method = rows[rows["method"] == label]
         own = []    # [(seed, its rows, files by pass)]
         for seed, of_run in sorted(of_method.groupby("seed"), key=lambda pair: pair[0]):
             run = of_run["run"].iloc[0]
-            by_pass = records.snapshot_files(results, run, runs[run]) if run in runs else {}
-            if by_pass:
-                own.append((int(seed), of_run, by_pass))
+            if run in runs and runs[run].snapshots:
+                own.append((int(seed), of_run, runs[run].snapshots))
         if not own and any(run in runs for run in of_method["run"]):
-            missing.append(f"{name}: no snapshots of {label} (seed {of_method['seed'].min():.0f}).")
-        if len(own) > seeds:
-            missing.append(f"{name}: images of {seeds} of the {len(own)} seeds of {label}; --seeds gives more.")
+            without.append(label)
         for number in dict.fromkeys(number for *_, by_pass in own[:seeds] for number in by_pass):
             for seed, of_run, by_pass in own[:seeds]:
                 if number in by_pass:
                     of_pass = of_run[of_run["pass"] == number]
                     captions = {component: gallery.caption(of_component)
                                 for component, of_component in of_pass.groupby("component") if component != "emission"}
-                    shown.append((label, number, seed, pictures.read_layers([by_pass[number]]), captions,
-                                  by_pass[number]))
+                    shown.append((label, number, seed, pictures.read_layers([by_pass[number]]), captions, by_pass[number]))
+    if shown and without:    # an experiment that keeps no images misses none
+        missing.append(f"{name}: no snapshots of {', '.join(without)}.")
     return shown
 
 
 def references(results, rows, runs, missing, name):
     """{path: (layers, its first file)} of the references that the runs were judged by."""
-    read = {}
+    judges = {}
     for run in rows["run"].unique():
-        path = found(runs.get(run, {}), "reference", "path")
-        if path and path not in read:
-            halves = records.reference_files(results, runs[run])
-            read[path] = (pictures.read_layers(halves), halves[0]) if halves else None
-    missing += [f"{name}: the reference is not found at {path}." for path, image in read.items() if image is None]
-    if not read and any(run in runs for run in rows["run"]):
-        missing.append(f"{name}: no reference, so no errors.")
-    return {path: image for path, image in read.items() if image is not None}
+        judge = records.reference_of(results, runs[run].description) if run in runs else None
+        if judge:
+            judges.setdefault(judge.path, judge)
+    missing += [f"{name}: the reference {path} {judge.why_not}." for path, judge in judges.items() if not judge.halves]
+    return {path: (pictures.read_layers(judge.halves), judge.halves[0]) for path, judge in judges.items() if judge.halves}
 
 
 def given_layers(layers):
@@ -262,7 +268,7 @@ def given_layers(layers):
 
 def viewer_scene(results, name, rows, labels, runs, missing, seeds):
     """A scene for the viewer, its images all of one size; None without images."""
-    shown = snapshots(results, rows, labels, runs, missing, name, seeds)
+    shown = snapshots(rows, labels, runs, missing, name, seeds)
     judges = references(results, rows, runs, missing, name)
     images = [(f"{label}, pass {number}", label, seed, layers, captions, file)
               for label, number, seed, layers, captions, file in shown]
@@ -285,6 +291,13 @@ def viewer_scene(results, name, rows, labels, runs, missing, seeds):
             "exposure": exposure, "pixels": list(places), "images": list(listed.values())}
 
 
+def seeds_left_out(rows, runs, seeds):
+    """What the viewer does not have though the folder does."""
+    with_images = rows[rows["run"].map(lambda run: run in runs and bool(runs[run].snapshots))]
+    most = int(with_images.groupby(["scene", "method"])["seed"].nunique().max())
+    return f"Of up to {most} seeds of a method, those of the lowest {seeds} are here; --seeds gives more." if most > seeds else ""
+
+
 def viewer_scenes(results, rows, labels, runs, missing, seeds):
     """Every scene's images. Only images of one size can be compared, so a scene of several sizes is several here."""
     scenes = []
@@ -302,6 +315,7 @@ def viewer_scenes(results, rows, labels, runs, missing, seeds):
 VIEWER = """
 <section id="images">
 <h2>Images</h2>
+<p class="small" id="left-out">{left_out}</p>
 <noscript><p>The images are shown by JavaScript, which is off.</p></noscript>
 <div id="viewer">
 <div>
@@ -344,19 +358,18 @@ wipe mode the divider follows the mouse. After a click or <kbd>tab</kbd> to the 
 </div>
 </div>
 <p class="small">Radiance in half floats: values and differences are exact to 0.05% of a pixel's radiance. Pixels that are not
-a number, and layers that an image does not have, are magenta. Where photons carry direct light, it is in the layer gathered.</p>
+a number, and layers that an image does not have, are magenta. Where photons carry direct light, it is in the layer gathered. {noise}</p>
 </section>
 """
 
 
 def facts(rows, runs):
     """Who, when and with what, as a list of terms."""
-    starts = sorted(distinct(found(record, "started") for record in runs.values()))
+    starts = sorted(distinct(found(run, "started") for run in runs.values()))
     days = distinct(start[:10] for start in ([starts[0], starts[-1]] if starts else []))
 
     def joined(separator, *places):
-        return distinct(separator.join(filter(None, (found(record, *place) for place in places)))
-                        for record in runs.values())
+        return distinct(separator.join(filter(None, (found(run, *place) for place in places))) for run in runs.values())
 
     extent = " · ".join(f"{count} {what}{'' if count == 1 else 's'}" for count, what in
                         [(rows["scene"].nunique(), "scene"), (rows["method"].nunique(), "method"),
@@ -376,22 +389,35 @@ def scene_table(rows, runs):
         images = distinct(f"{row['width']} × {row['height']}, {row['samples_per_pixel']} a pixel"
                           for _, row in of_scene.drop_duplicates(["width", "height", "samples_per_pixel"]).iterrows())
         floor = of_scene[of_scene["component"] == "total"]["reference_floor"].max()
-        lines.append([scene, "; ".join(distinct(found(record, "scene", "file") for record in own)) or NOTHING,
-                      "; ".join(images), "; ".join(distinct(found(record, "reference", "path") for record in own)) or
+        lines.append([scene, "; ".join(distinct(found(run, "scene", "file") for run in own)) or NOTHING,
+                      "; ".join(images), "; ".join(distinct(found(run, "reference", "path") for run in own)) or
                       NOTHING, number(records.root(floor))])
     return table("Scenes", "the noise is the reference's own RMSE", [],
                  ["scene", "file", "image, samples", "reference", "its noise"], lines)
 
 
-def figures(results, missing):
-    drawn = sorted((results / "figures").glob("*.png"))
-    if not drawn:
-        missing.append("No figures: RESULTS/figures has no PNG. The other tools of analysis/ draw them.")
-        return ""
-    shown = "\n".join(f'<figure><img alt="{escape(file.name)}" src="data:image/png;base64,'
-                      f'{base64.b64encode(files.read_bytes(file)).decode()}"><figcaption>{escape(file.name)}</figcaption>'
-                      "</figure>" for file in drawn)
-    return f'<section id="figures"><h2>Figures</h2>{shown}</section>'
+def figures(results, stale):
+    """The figures of these records; the names of others go to `stale`."""
+    drawn = {file: files.read_bytes(file) for file in sorted((results.folder / "figures").glob("*.png"))}
+    stale += [f"figures/{file.name}" for file, data in drawn.items() if style.records_of_png(data) != results.hash]
+    shown = "\n".join(f'<figure><img alt="{escape(file.name)}" src="data:image/png;base64,{base64.b64encode(data).decode()}">'
+                      f"<figcaption>{escape(file.name)}</figcaption></figure>" for file, data in drawn.items()
+                      if style.records_of_png(data) == results.hash)
+    return f'<section id="figures"><h2>Figures</h2>{shown}</section>' if shown else ""
+
+
+def derived_tables(results, stale):
+    """The tables that other tools made from these records; the names of others go to `stale`."""
+    shown = ""
+    for name, title in DERIVED_TABLES.items():
+        if not files.is_there(results.folder / name):
+            continue
+        rows = tables.read_table(results.folder / name)
+        if tables.is_stale(rows, results.hash):
+            stale.append(name)
+        else:
+            shown += derived_table(name, title, rows.drop(columns=tables.RECORDS, errors="ignore"), results.rows)
+    return shown
 
 
 def flattened(value, name=""):
@@ -404,11 +430,11 @@ def flattened(value, name=""):
 def settings(runs):
     """Every run's run.json, folded; what is null does not apply to the run."""
     folded = []
-    for run, record in runs.items():
-        texts = [(name, value if isinstance(value, str) else json.dumps(value))
-                 for name, value in flattened(record) if value is not None]
-        lines = "".join(f"<dt>{escape(name)}</dt><dd>{escape(text)}</dd>" for name, text in texts)
-        folded.append(f"<details><summary>{escape(run)}</summary><dl>{lines}</dl></details>")
+    for name, run in runs.items():
+        texts = [(place, value if isinstance(value, str) else json.dumps(value))
+                 for place, value in flattened(run.description) if value is not None]
+        lines = "".join(f"<dt>{escape(place)}</dt><dd>{escape(text)}</dd>" for place, text in texts)
+        folded.append(f"<details><summary>{escape(name)}</summary><dl>{lines}</dl></details>")
     return f'<section id="settings"><h2>Settings of the runs</h2>{"".join(folded)}</section>' if folded else ""
 
 
@@ -419,20 +445,20 @@ def inlined(data):
 
 def page(results, seeds):
     """The whole page as text, with images of up to `seeds` seeds a method."""
-    rows = records.read_records(results)
-    for column in COUNTERS + MEMORY:
-        rows[column] = tables.to_numbers(results / "iterations.csv", rows[column])
+    rows = results.rows
+    for column in [*COUNTERS, *KEPT, "peak_rss_mib"]:
+        rows[column] = tables.to_numbers(results.file, rows[column])
     labels = records.methods_in_order(rows)
-    missing = []
-    runs = read_runs(results, rows, missing)
+    missing, stale = [], []
+    runs = read_runs(results, missing)
     scenes = viewer_scenes(results, rows, labels, runs, missing, seeds)
-    figure_section = figures(results, missing)
-    of_scenes = "".join(result_tables(scene, of_scene, [label for label in labels if label in set(of_scene["method"])])
+    figure_section = figures(results, stale)
+    derived = derived_tables(results, stale)
+    missing += [f"{name}: was not made from the records that are here now, so it is not shown." for name in stale]
+    of_scenes = "".join(result_tables(scene, of_scene, [label for label in labels if label in set(of_scene["method"])], runs)
                         for scene, of_scene in rows.groupby("scene", sort=False))
-    derived = "".join(derived_table(results / name, title, rows) for name, title in DERIVED_TABLES.items()
-                      if files.is_there(results / name))
     experiments = ", ".join(distinct(rows["experiment"]))
-    title = " / ".join(distinct(found(record, "title") for record in runs.values())) or experiments
+    title = " / ".join(distinct(found(run, "title") for run in runs.values())) or experiments
     colours = style.pyplot.get_cmap(strip.DIFFERENCE_COLOURS)(numpy.linspace(0, 1, 255), bytes=True)[:, :3].tolist()
     data = inlined({"differenceColours": colours, "scenes": scenes})
     absences = "".join(f"<li>{escape(text)}</li>" for text in missing)
@@ -463,12 +489,13 @@ def page(results, seeds):
 <h2>Errors and costs</h2>
 {scene_table(rows, runs)}
 {of_scenes}
-<p class="small">RMSE: root of the mean over seeds of the squared error, free of the reference's noise (iterations.csv,
-<code>mse_unbiased</code>); “below resolution” where that mean is not above 0, less than the reference can tell.
-Seconds and photons: means over seeds; memory: the largest. A click on a column's name sorts by it.</p>
+<p class="small">RMSE: root of the mean over seeds of the squared error, of <code>mse_unbiased</code> in iterations.csv where it is
+without the reference's noise; “below resolution” where that mean is not above 0, less than the reference can tell. relMSE:
+mean over seeds of <code>relmse</code>. Seconds and photons: means over seeds. Memory: the largest; that of a process is no
+method's own where it made several runs together. A click on a column's name sorts by it.</p>
 </section>
 {f'<section id="derived"><h2>Derived tables</h2>{derived}</section>' if derived else ""}
-{VIEWER if scenes else ""}
+{VIEWER.format(left_out=seeds_left_out(rows, runs, seeds), noise=records.noise_note(rows)) if scenes else ""}
 {figure_section}
 {settings_section}
 <script type="application/json" id="data">{data}</script>
@@ -497,9 +524,9 @@ def main(arguments):
     parser.add_argument("--seeds", type=whole_positive, default=2, metavar="N", help="how many seeds of each method the viewer "
                         "has images of, of those with snapshots (default: 2); the page grows with it")
     options = parser.parse_args(arguments)
-    results = options.results
+    results = records.read(options.results)
     text = page(results, options.seeds)
-    print(f"{files.replace_file(results / 'report.html', text)} ({len(text) / 1e6:.1f} MB)")
+    print(f"{files.replace_file(results.folder / 'report.html', text)} ({len(text) / 1e6:.1f} MB)")
     return 0
 
 

@@ -20,13 +20,14 @@ from pathlib import Path
 
 try:
     import files
+    import kept_files
     import style
     import tables
     from files import InputError
     from matplotlib import lines
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas and matplotlib (on Debian: "
-          "/usr/bin/python3 with python3-pandas and python3-matplotlib)", file=sys.stderr)
+          "/usr/bin/python3 with python3-pandas, python3-xxhash and python3-matplotlib)", file=sys.stderr)
     sys.exit(2)
 
 SCENE = Path(__file__).resolve().parents[1] / "scenes/cornell-box/scene.xml"
@@ -195,9 +196,10 @@ def main(arguments):
     chosen = parser.parse_args(arguments)
     if chosen.run:
         make(chosen.run, chosen.results)
-    table = read(chosen.results / "scaling.csv")
+    file = chosen.results / "scaling.csv"
+    table = read(file)
     print("\n".join(statements(table)))
-    for file in style.save(draw(table), chosen.results, "scaling"):
+    for file in style.save(draw(table), chosen.results, "scaling", kept_files.hash_of(files.read_bytes(file))):
         print(file)
     return 0
 

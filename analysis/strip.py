@@ -19,7 +19,7 @@ try:
     import style
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas, matplotlib and OpenImageIO (on "
-          "Debian: /usr/bin/python3 with python3-pandas, python3-matplotlib and python3-openimageio)", file=sys.stderr)
+          "Debian: /usr/bin/python3 with python3-pandas, python3-xxhash, python3-matplotlib and python3-openimageio)", file=sys.stderr)
     sys.exit(2)
 
 COMPONENT_TITLES = {"total": "whole image", "emission": "emission alone", "direct": "direct light alone",
@@ -49,8 +49,7 @@ def snapshots_of(results, scene_rows, label, seed):
     if rows.empty:
         return None
     run = rows["run"].iloc[0]
-    record = records.read_run(results, run)
-    return run, record, records.snapshot_files(results, run, record)
+    return run, results.run(run).description, results.run(run).snapshots
 
 
 def chosen_pass(passes_of_methods, wanted):
@@ -67,8 +66,9 @@ def error_text(scene_rows, run, number, component):
                       (scene_rows["component"] == component)]
     if rows.empty or rows["mse"].isna().all():
         return ""
-    value = rows[records.error_column(rows)].iloc[0]
-    return f"RMSE {style.two_digits(records.root(value))}" if value > 0 else "below resolution"
+    column = records.error_column(rows)
+    value = rows[column].iloc[0]
+    return f"{records.error_name(column)} {style.two_digits(records.root(value))}" if value > 0 else "below resolution"
 
 
 def collect(results, scene, scene_rows, labels, options):
@@ -97,13 +97,13 @@ def collect(results, scene, scene_rows, labels, options):
         if image is None:
             print(f"{scene}: {label}: {by_pass[number]} has no layer {options.component}")
             continue
-        reference_files = records.reference_files(results, record)
-        own_reference = pictures.read_reference(reference_files, options.component, carried)
+        judge = records.reference_of(results, record)
+        own_reference = pictures.read_reference(judge.halves, options.component, carried) if judge else None
         if own_reference is None:
             print(f"{scene}: {label}: no reference for the {COMPONENT_TITLES[options.component]}" +
-                  (f" at {record['reference']['path']}" if record.get("reference") else "") + ", so no difference")
+                  (f": {judge.path} {judge.why_not or 'has none'}" if judge else "") + ", so no difference")
         else:
-            pictures.require_same_size(by_pass[number], image, reference_files[0], own_reference)
+            pictures.require_same_size(by_pass[number], image, judge.halves[0], own_reference)
         if reference is None and own_reference is not None:
             reference = own_reference
             floor = records.root(rows[rows["component"] == options.component]["reference_floor"].max())
@@ -113,7 +113,7 @@ def collect(results, scene, scene_rows, labels, options):
     return entries, reference, floor
 
 
-def draw_strip(title, entries, reference, floor, exposure):
+def draw_strip(title, entries, reference, floor, exposure, noise):
     """The figure: images above, differences below, the reference last with the colour bar under it."""
     style.use()
     style.pyplot.rcParams["axes.grid"] = False
@@ -125,7 +125,13 @@ def draw_strip(title, entries, reference, floor, exposure):
     cell_height = cell * picture_height / picture_width
     names = [textwrap.wrap(label, max(12, int(cell * 14))) for label, *_ in entries]
     top = 0.3 + 0.15 * max(map(len, names))
-    text, caption = 0.36, 0.25
+    note = f"Pictures: radiance × {exposure:.3g}, sRGB."
+    if differences:
+        note += " Differences: mean over R, G, B."
+    if floor > 0:
+        note += f" Floor of the reference: RMSE {style.two_digits(floor)}."
+    note = textwrap.wrap(f"{note} {noise}", int(104 * width / style.FULL_WIDTH))
+    text, caption = 0.36, 0.12 + 0.13 * len(note)
     rows = 2 if differences else 1
     height = top + rows * cell_height + text + (0.08 if rows > 1 else 0) + caption
 
@@ -169,12 +175,7 @@ def draw_strip(title, entries, reference, floor, exposure):
         bar.set_yticklabels([f"−{limit}", "0", f"+{limit}"], fontsize=8)
         bar.tick_params(length=2)
     figure.text(0.1 / width, 1 - 0.05 / height, title, va="top", fontsize=9.5)
-    note = f"Pictures: radiance × {exposure:.3g}, sRGB."
-    if mapped is not None:
-        note += " Differences: mean over R, G, B."
-    if floor > 0:
-        note += f" Floor of the reference: RMSE {style.two_digits(floor)}."
-    figure.text(0.1 / width, 0.05 / height, note, fontsize=7.5, color="#333333")
+    figure.text(0.1 / width, 0.05 / height, "\n".join(note), fontsize=7.5, color="#333333", linespacing=1.25)
     return figure
 
 
@@ -197,8 +198,8 @@ def main(arguments):
     parser.add_argument("--exposure", type=style.positive, metavar="E",
                         help="factor on radiance in the pictures (default: 97%% of the lit pixels are below white)")
     options = parser.parse_args(arguments)
-    results = options.results
-    rows = records.read_records(results)
+    results = records.read(options.results)
+    rows = results.rows
     labels = records.methods_in_order(rows)
     for scene, scene_rows in rows.groupby("scene", sort=False):
         own_labels = [label for label in labels if label in set(scene_rows["method"])]
@@ -208,9 +209,9 @@ def main(arguments):
             continue
         exposure = options.exposure or pictures.exposure_for(entries[0][2] if reference is None else reference)
         title = f"{scene}: {COMPONENT_TITLES[options.component]}"
-        figure = draw_strip(title, entries, reference, floor, exposure)
+        figure = draw_strip(title, entries, reference, floor, exposure, records.noise_note(scene_rows))
         suffix = "" if options.component == "total" else f"-{options.component}"
-        for file in style.save(figure, results, f"strip-{records.file_name(scene)}{suffix}"):
+        for file in style.save(figure, results.folder, f"strip-{records.file_name(scene)}{suffix}", results.hash):
             print(file)
     return 0
 

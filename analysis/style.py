@@ -7,6 +7,7 @@ Colours: Okabe and Ito 2008, "Color Universal Design", with a grey in place of t
 import io
 import itertools
 import math
+import struct
 import textwrap
 
 import files
@@ -22,6 +23,8 @@ MARKERS = ["o", "s", "^", "D", "v", "P", "X", "<", ">", "*", "p"]
 LINES = {"photonmapper radius": (0, (5, 1.5)), "photonmapper nearest": (0, (5, 1.5, 1, 1.5)), "path": (0, (1, 1.2)),
          "ppm hachisuka": "solid", "ppm knaus-zwicker": (0, (9, 1.2, 1.2, 1.2))}
 
+RECORDS = "photonlab.records"    # what a figure's metadata has the hash of its records under
+PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
 FULL_WIDTH = 6.6    # inches; text of 9 points can still be read where the page shrinks it to a column
 
 
@@ -135,10 +138,24 @@ def two_digits(value):
     return f"{value:.0f}" if value >= 100 else f"{value:#.2g}".rstrip(".")
 
 
-def save(figure, results, name):
-    """Writes RESULTS/figures/NAME.png and .pdf; returns both names. The same records give the same bytes: no date."""
+def save(figure, folder, name, records):
+    """Writes FOLDER/figures/NAME.png and .pdf; returns both names. Both say the hash of the records that they were made from. The
+    same records give the same bytes: no date."""
     drawn = {"png": io.BytesIO(), "pdf": io.BytesIO()}
-    figure.savefig(drawn["png"], format="png", metadata={"Software": None})
-    figure.savefig(drawn["pdf"], format="pdf", metadata={"CreationDate": None, "Creator": None, "Producer": None})
+    figure.savefig(drawn["png"], format="png", metadata={"Software": None, RECORDS: records})
+    figure.savefig(drawn["pdf"], format="pdf", metadata={"CreationDate": None, "Creator": None, "Producer": None,
+                                                         "Keywords": f"{RECORDS} {records}"})
     pyplot.close(figure)
-    return [files.replace_file(results / "figures" / f"{name}.{kind}", data.getvalue()) for kind, data in drawn.items()]
+    return [files.replace_file(folder / "figures" / f"{name}.{kind}", data.getvalue()) for kind, data in drawn.items()]
+
+
+def records_of_png(data):
+    """The hash of the records that a figure says it was made from; None where it says nothing."""
+    place = len(PNG_SIGNATURE)
+    while data.startswith(PNG_SIGNATURE) and place + 8 <= len(data):
+        length, kind = struct.unpack(">I4s", data[place:place + 8])
+        keyword, _, text = data[place + 8:place + 8 + length].partition(b"\0")
+        if kind == b"tEXt" and keyword == RECORDS.encode():
+            return text.decode("latin-1")
+        place += length + 12    # with the checksum behind it
+    return None

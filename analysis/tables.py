@@ -14,6 +14,7 @@ import pandas
 import files
 from files import InputError
 
+RECORDS = "records"    # column of tables that are made from records
 FORMULA = re.compile("'*[=+\\-@\t\r]")    # how a text begins that has an apostrophe more in the file
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?|[+-]?(inf|nan)", re.IGNORECASE)
 
@@ -31,8 +32,12 @@ def from_file(text):
 
 
 def read_table(file):
-    """The CSV as text. pandas would fill up a row that was cut, so the fields are counted here."""
-    text = files.read_text(file)
+    return table_in(file, files.read_bytes(file))
+
+
+def table_in(file, data):
+    """The bytes of a CSV as a table of text. pandas would fill up a row that was cut, so the fields are counted here."""
+    text = files.text_in(file, data)
     reader = csv.reader(io.StringIO(text, newline=""), strict=True)
     try:
         header = next(reader, [])
@@ -55,6 +60,28 @@ def write_table(file, columns, rows):
     """Replaces the file by a table of rows, which are dictionaries; what else they have is left out."""
     lines = [columns, *([in_file(row.get(column)) for column in columns] for row in rows)]
     return files.replace_file(file, "".join(",".join(map(quoted, line)) + "\n" for line in lines))
+
+
+def write_derived(results, name, columns, rows):
+    """RESULTS/NAME with a column `records`: the hash of the records that the rows were made from."""
+    return write_table(results.folder / name, [*columns, RECORDS], [{**row, RECORDS: results.hash} for row in rows])
+
+
+def read_derived(results, name, columns, tool):
+    """The same, refused where it was made from other records than there are now."""
+    file = results.folder / name
+    if not files.is_there(file):
+        raise InputError(f"{file}: is not there; run {tool} first")
+    table = read_table(file)
+    require_columns(file, table, columns, f"run {tool} again")
+    if is_stale(table, results.hash):
+        raise InputError(f"{file}: was made from other records than those in iterations.csv; run {tool} again")
+    return table
+
+
+def is_stale(table, records):
+    """True where a table does not say in every row that it was made from the records with this hash."""
+    return not table.empty and (RECORDS not in table.columns or (table[RECORDS] != records).any())
 
 
 def quoted(value):

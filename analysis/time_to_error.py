@@ -26,7 +26,7 @@ try:
     from matplotlib import lines
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, pandas and matplotlib (on Debian: "
-          "/usr/bin/python3 with python3-pandas and python3-matplotlib)", file=sys.stderr)
+          "/usr/bin/python3 with python3-pandas, python3-xxhash and python3-matplotlib)", file=sys.stderr)
     sys.exit(2)
 
 CLOCKS = {"seconds": "wall clock", "cpu_seconds": "processor"}
@@ -103,7 +103,7 @@ def draw(recorded, table, labels):
     handles = [lines.Line2D([], [], label=label, **styles[label]) for label in labels]
     figure, grid = style.panels_over_legend(
         len(scenes), len(CLOCKS), handles, "Whole picture. Means over seeds with standard errors; arrows: more than the budget, "
-        "which is where they start.")
+        "which is where they start. relMSE holds the reference's noise.")
     thresholds = [row["threshold"] for row in whole]
     for scene, panels in zip(scenes, grid):
         of_scene = [row for row in whole if row["scene"] == scene]
@@ -140,19 +140,19 @@ def main(arguments):
     parser.add_argument("--thresholds", type=style.positive, nargs="+", default=[1e-1, 1e-2, 1e-3], metavar="RELMSE",
                         help="errors to be reached (default: 0.1 0.01 0.001)")
     options = parser.parse_args(arguments)
-    results = options.results
-    recorded = records.read_records(results)
+    results = records.read(options.results)
+    recorded = results.rows
     labels = records.methods_in_order(recorded)
     table = table_of(recorded, labels, sorted(set(options.thresholds), reverse=True))
     if not table:
-        print(f"{results}: no relmse was recorded (was there a reference?), so no times")
+        print(f"{results.folder}: no relmse was recorded (was there a reference?), so no times")
         return 0
-    print(tables.write_table(results / "time-to-error.csv", COLUMNS, table))
+    print(tables.write_derived(results, "time-to-error.csv", COLUMNS, table))
     figure = draw(recorded, table, labels)
     if figure is None:
-        print(f"{results}: no method reached a threshold, so there is nothing to draw")
+        print(f"{results.folder}: no method reached a threshold, so there is nothing to draw")
         return 0
-    for file in style.save(figure, results, "time-to-error"):
+    for file in style.save(figure, results.folder, "time-to-error", results.hash):
         print(file)
     return 0
 

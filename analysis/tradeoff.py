@@ -30,7 +30,7 @@ try:
     from scipy import stats
 except ImportError as error:
     print(f"{sys.executable}: {error}; expected an interpreter with numpy, scipy, pandas, matplotlib and OpenImageIO (on "
-          "Debian: /usr/bin/python3 with python3-scipy, python3-pandas, python3-matplotlib and python3-openimageio)",
+          "Debian: /usr/bin/python3 with python3-scipy, python3-pandas, python3-xxhash, python3-matplotlib and python3-openimageio)",
           file=sys.stderr)
     sys.exit(2)
 
@@ -156,10 +156,11 @@ def sentence(row):
     return f"{row['text'] or row['point']}: {', '.join(texts)}"
 
 
-def markdown(tables, clock):
+def markdown(tables, clock, noise):
     """All scenes: each default in numbers, then a line a method; those on the Pareto front are bold."""
     parts = ["# What each setting buys and costs", "", "RMSE and seconds of the last pass; ratios to the default with 95% intervals "
-             "over paired seeds. Bold: on the Pareto front of its scene (nothing is both faster and more accurate).", ""]
+             "over paired seeds. Bold: on the Pareto front of its scene (nothing is both faster and more accurate). "
+             + noise, ""]
     for table in tables:
         parts.append(f"## {table[0]['scene']}")
         for row in table:
@@ -173,7 +174,7 @@ def markdown(tables, clock):
     return "\n".join(parts)
 
 
-def draw_scene(table, clock):
+def draw_scene(table, clock, noise):
     """Error against seconds: a line a knob through the default, and the Pareto front under them. None when nothing is resolved."""
     table = [row for row in table if row["rmse"] > 0]
     if not table:
@@ -191,7 +192,7 @@ def draw_scene(table, clock):
                 for place, name in enumerate(defaults)]
     handles.append(lines.Line2D([], [], label="Pareto front", **FRONT))
     figure, [[axes]] = style.panels_over_legend(1, 1, handles, "Bars: standard errors over seeds. A line joins the values of one "
-                                                "setting; the rest is as in its default.", panel_height=3.4)
+                                                f"setting; the rest is as in its default. {noise}", panel_height=3.4)
     for knob in knobs:
         of_knob = [row for row in table if not is_default(row) and (row["default"], row["knob"] or row["point"]) == knob]
         line = sorted(of_knob + [defaults[name] for name in [knob[0]] if name in defaults],
@@ -228,18 +229,20 @@ def main(arguments):
     parser.add_argument("results", metavar="RESULTS_DIR", type=Path, help="folder of an experiment's results")
     parser.add_argument("--clock", choices=CLOCKS, default="seconds", help="what time is taken from (default: seconds)")
     options = parser.parse_args(arguments)
-    results, clock = options.results, options.clock
-    recorded = records.read_records(results)
-    of_scenes = [table_of(results / "iterations.csv", scene, rows, records.settings_of(recorded), clock)
+    results, clock = records.read(options.results), options.clock
+    recorded = results.rows
+    of_scenes = [table_of(results.file, scene, rows, records.settings_of(recorded), clock)
               for scene, rows in recorded.groupby("scene", sort=False)]
-    print(tables.write_table(results / "tradeoff.csv", COLUMNS, [row for table in of_scenes for row in table]))
-    print(files.replace_file(results / "tradeoff.md", markdown(of_scenes, clock)))
+    print(tables.write_derived(results, "tradeoff.csv", COLUMNS, [row for table in of_scenes for row in table]))
+    noise = records.noise_note(recorded[recorded["component"] == "total"])
+    words = f"{markdown(of_scenes, clock, noise)}\n<!-- {style.RECORDS} {results.hash} -->\n"
+    print(files.replace_file(results.folder / "tradeoff.md", words))
     for table in of_scenes:
-        figure = draw_scene(table, clock)
+        figure = draw_scene(table, clock, noise)
         if figure is None:
             print(f"{table[0]['scene']}: nothing is resolved, so there is nothing to draw")
             continue
-        for file in style.save(figure, results, f"tradeoff-{records.file_name(table[0]['scene'])}"):
+        for file in style.save(figure, results.folder, f"tradeoff-{records.file_name(table[0]['scene'])}", results.hash):
             print(file)
     return 0
 

@@ -43,7 +43,7 @@ def write_csv(results, made, columns=None):
     results = Path(results)
     results.mkdir(parents=True, exist_ok=True)
     with open(results / "iterations.csv", "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, columns or [*records.COLUMNS, "seconds_direct"], restval="",
+        writer = csv.DictWriter(file, columns or [*records.COLUMNS, "seconds_direct"], restval="", lineterminator="\n",
                                 extrasaction="ignore")
         writer.writeheader()
         writer.writerows(made)

@@ -1,6 +1,5 @@
 """The figure of the best alpha has a line and a band for each sweep, and says what it lacks."""
 
-import csv
 import tempfile
 import unittest
 from pathlib import Path
@@ -10,6 +9,8 @@ import synthetic
 try:
     import best_alpha
     import fits
+    import records
+    import tables
 except ImportError as error:
     raise unittest.SkipTest(f"{error} (Debian: python3-openimageio)")
 
@@ -20,10 +21,9 @@ def write_best(results, radii=("4", "16"), regions=("image", "edge"), passes=(1,
              "component": component, "region": region, "pass": number, "paths_emitted": 1000 * number, "best_alpha": 0.7,
              "probability": 0.9, "candidates": "0.7" if number > 2 else "0.5;0.7;0.9"}
             for component in ["total", "gathered"] for radius in radii for region in regions for number in passes]
-    with open(Path(results) / "best-alphas.csv", "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, fits.BEST_COLUMNS, restval="")
-        writer.writeheader()
-        writer.writerows(made)
+    synthetic.write_csv(results, synthetic.rows(lambda *_: 1e-4))
+    tables.write_derived(records.read(results), "best-alphas.csv", fits.BEST_COLUMNS, made)
+    return records.read(results)
 
 
 class BestAlpha(unittest.TestCase):
@@ -40,16 +40,13 @@ class BestAlpha(unittest.TestCase):
             self.assertIn(name, output)
 
     def test_sweeps_are_told_apart_by_what_differs_and_are_in_its_order(self):
-        write_best(self.results, radii=["16", "4"])
-        families = best_alpha.families_of(best_alpha.read_best(self.results))
+        families = best_alpha.families_of(best_alpha.read_best(write_best(self.results, radii=["16", "4"])))
         self.assertEqual(list(families), ["initial radius = 4", "initial radius = 16"])
         self.assertEqual(set(families["initial radius = 16"]["radius_initial"]), {"16"})
-        write_best(self.results, radii=["4"])
-        self.assertEqual(list(best_alpha.families_of(best_alpha.read_best(self.results))), [""])
+        self.assertEqual(list(best_alpha.families_of(best_alpha.read_best(write_best(self.results, radii=["4"])))), [""])
 
     def test_the_band_reaches_from_the_least_candidate_to_the_largest(self):
-        write_best(self.results, radii=["4"])
-        figure = best_alpha.draw_scene(best_alpha.read_best(self.results))
+        figure = best_alpha.draw_scene(best_alpha.read_best(write_best(self.results, radii=["4"])))
         axes = figure.axes[0]
         x, y = axes.lines[0].get_data()
         self.assertEqual([list(x), [str(one) for one in y]], [[1000, 2000, 4000], ["nan", "nan", "0.7"]])
@@ -59,6 +56,7 @@ class BestAlpha(unittest.TestCase):
         self.assertEqual(len(figure.axes), 2)    # a column a region
 
     def test_without_a_table_or_with_an_older_one_it_says_what_to_run(self):
+        synthetic.write_csv(self.results, synthetic.rows(lambda *_: 1e-4))
         code, _, errors = synthetic.run(best_alpha, self.results)
         self.assertEqual(code, 2)
         self.assertIn("best-alphas.csv: is not there; run fits.py", errors)
@@ -66,6 +64,11 @@ class BestAlpha(unittest.TestCase):
         code, _, errors = synthetic.run(best_alpha, self.results)
         self.assertEqual(code, 2)
         self.assertIn("candidates", errors)
+        write_best(self.results)
+        synthetic.write_csv(self.results, synthetic.rows(lambda *_: 2e-4))
+        code, _, errors = synthetic.run(best_alpha, self.results)
+        self.assertEqual(code, 2)
+        self.assertIn("best-alphas.csv: was made from other records than those in iterations.csv; run fits.py", errors)
 
 
 if __name__ == "__main__":

@@ -40,7 +40,7 @@ class BiasVariance(unittest.TestCase):
             self.assertIn(name, output)
 
     def test_a_curve_lies_where_its_photons_and_seconds_are(self):
-        rows = bias_variance.read_decomposition(self.results)
+        rows = bias_variance.read_decomposition(records.read(self.results))
         own = rows[(rows["point"] == "box_alpha-0.9") & (rows["component"] == "gathered") & (rows["region"] == "image") &
                    (rows["pass"] > 0)]
         for against, place in [("passes", lambda n: n), ("photons", lambda n: 50000 * n), ("seconds", lambda n: 0.01 + n / 4)]:
@@ -50,7 +50,7 @@ class BiasVariance(unittest.TestCase):
         self.assertEqual(len(bias_variance.curve_of(own.assign(paths_emitted=numpy.nan), "mse", "photons")[0]), 0)
 
     def test_roots_are_drawn_of_the_same_values(self):
-        recorded, rows = records.read_records(self.results), bias_variance.read_decomposition(self.results)
+        recorded, rows = records.read(self.results).rows, bias_variance.read_decomposition(records.read(self.results))
         squares, roots = (bias_variance.draw_scene(recorded, rows, records.methods_in_order(recorded), "seconds", roots)
                           for roots in [False, True])
         for one, other in zip(squares.axes, roots.axes):
@@ -67,7 +67,7 @@ class BiasVariance(unittest.TestCase):
         self.assertIn("bias-variance-cornell-box-roots-photons.pdf", output)
 
     def test_what_is_not_above_two_errors_is_not_resolved(self):
-        rows = bias_variance.read_decomposition(self.results)
+        rows = bias_variance.read_decomposition(records.read(self.results))
         gathered = rows[(rows["component"] == "gathered") & (rows["region"] == "image") & (rows["pass"] > 0)]
         *_, resolved = bias_variance.curve_of(gathered[gathered["point"] == "box_alpha-0.9"], "squared_bias")
         self.assertTrue(resolved.all())
@@ -75,9 +75,9 @@ class BiasVariance(unittest.TestCase):
         self.assertLess(resolved.sum(), 4)    # of 8 passes; above two errors by chance in a few
 
     def test_theory_starts_at_the_first_value_of_the_window(self):
-        rows = bias_variance.read_decomposition(self.results)
+        rows = bias_variance.read_decomposition(records.read(self.results))
         rows = rows[(rows["point"] == "box_alpha-0.9") & (rows["pass"] > 0)]
-        recorded = records.read_records(self.results)
+        recorded = records.read(self.results).rows
         recorded = recorded[recorded["run"].map(decomposition.point_of) == "box_alpha-0.9"]
         passes, values = bias_variance.theory_of(recorded, rows, "gathered", "image")
         self.assertEqual((passes[0], passes[-1]), (4, 128))

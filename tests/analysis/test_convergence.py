@@ -29,7 +29,7 @@ class Convergence(unittest.TestCase):
 
     def draw(self, made):
         synthetic.write_csv(self.results, made)
-        rows = records.read_records(self.results)
+        rows = records.read(self.results).rows
         figure = convergence.draw_scene(rows, records.methods_in_order(rows))
         if figure:
             self.addCleanup(style.pyplot.close, figure)

@@ -11,6 +11,7 @@ import synthetic
 try:
     import decomposition
     import equal_time
+    import records
     import synthetic_ensembles as made
     from test_strip import layered, write_exr
 except ImportError as error:
@@ -89,7 +90,7 @@ class EqualTime(unittest.TestCase):
                 self.assertEqual(row["rmse"] != "", row["region"] == "edge", row)    # "smooth" has no error at all
                 self.assertTrue(row["note"] == "not resolved" or abs(float(row["rmse"]) - 0.1) < 1e-6)
         self.assertEqual({row["region"] for row in self.table()}, {"image", "smooth", "edge"})
-        self.assertEqual(equal_time.insets_of(self.results, "cornell-box", numpy.ones((made.HEIGHT, made.WIDTH, 3)), None),
+        self.assertEqual(equal_time.insets_of(records.read(self.results), "cornell-box", numpy.ones((made.HEIGHT, made.WIDTH, 3)), None),
                          made.REGIONS)
 
     def test_insets_have_no_light_in_them(self):
@@ -105,7 +106,7 @@ class EqualTime(unittest.TestCase):
         self.write()
         synthetic.run(equal_time, self.results)
         import records
-        rows = records.read_records(self.results)
+        rows = records.read(self.results).rows
         curve = equal_time.curve_of(rows[rows["method"] == "PPM"], "total")
         self.assertEqual(equal_time.at_budget(curve, 0.1), "less than one pass")
         self.assertEqual(equal_time.at_budget(curve, 100), "more than recorded")

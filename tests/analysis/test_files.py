@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 from pathlib import Path
 from unittest import mock
@@ -96,6 +95,14 @@ class Writing(InFolder):
         self.addCleanup(os.umask, before)
         self.assertEqual(files.replace_file(self.file, "x").stat().st_mode & 0o777, 0o640)
 
+    def test_files_that_only_look_like_leftovers_stay(self):
+        names = ["a.partial-0123456789abcde", "a.partial-0123456789abcdefg", "a.partial-0123456789ABCDEF", "apartial-0123456789abcdef"]
+        for name in names:
+            (self.folder / name).write_text("mine")
+        (self.folder / "a\n.partial-0123456789abcdef").write_text("left")
+        files.replace_file(self.file, "x")
+        self.assert_only("table.csv", *names)
+
     def test_a_name_of_255_bytes_is_written_and_one_more_is_refused(self):
         files.replace_file(self.folder / ("x" * 255), "x")
         self.assertIn("cannot be written: File name too long", self.refusal(files.replace_file, self.folder / ("x" * 256), "x"))
@@ -150,11 +157,14 @@ class Writing(InFolder):
         process = self.in_another_process("import os, time\nos.fsync = lambda _: (print('there', flush=True), time.sleep(60))\n"
                                           "files.replace_file(file, 'new')")
         self.assertEqual(process.stdout.readline(), "there\n")
+        files.replace_file(self.folder / "beside.csv", "x")
+        self.assertEqual(len(os.listdir(self.folder)), 3)    # what is being written is left alone
         process.kill()
         process.communicate(timeout=60)
         self.assertEqual(self.file.read_text(), "old")
         files.replace_file(self.file, "new")
         self.assertEqual(self.file.read_text(), "new")
+        self.assert_only("beside.csv", "table.csv")
 
 
 class Commands(InFolder):

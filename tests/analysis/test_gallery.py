@@ -33,9 +33,9 @@ class Gallery(unittest.TestCase):
                 write_exr(self.results / reference / f"{half}.exr", layered(1.0, 0.5))
 
     def collected(self):
-        rows = records.read_records(self.results)
+        rows = records.read(self.results).rows
         labels = records.methods_in_order(rows)
-        return gallery.collect(self.results, "cornell-box", rows, labels)
+        return gallery.collect(records.read(self.results), "cornell-box", rows, labels)
 
     def test_ppm_stands_above_pm_at_every_recorded_pass(self):
         self.make_results([0, 1, 64])

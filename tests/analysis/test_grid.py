@@ -33,7 +33,7 @@ class Grid(unittest.TestCase):
 
     def test_cells_are_root_mean_errors_of_the_last_pass(self):
         self.make()
-        rows = records.read_records(self.results)
+        rows = records.read(self.results).rows
         self.assertEqual(grid.swept_settings(rows), ["radius_initial", "alpha"])
         columns, lines, errors = grid.final_errors(rows, "alpha", "radius_initial")
         self.assertEqual((columns, lines), (["0.5", "0.9"], ["4", "16", "100"]))

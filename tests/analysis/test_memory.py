@@ -27,7 +27,7 @@ class Memory(unittest.TestCase):
         synthetic.write_csv(self.results, made)
 
     def lines(self):
-        rows = records.read_records(self.results)
+        rows = records.read(self.results).rows
         for column in memory.MEASURED:
             rows[column] = rows[column].astype(float)
         return memory.lines_of(rows, records.methods_in_order(rows))

@@ -33,7 +33,7 @@ class Probes(unittest.TestCase):
 
     def test_rows_are_numbers_with_the_label_of_their_method(self):
         self.write([self.row(1), self.row(2, density="")])
-        rows = probes.read_probes(self.results, {self.run: "PPM"})
+        rows = probes.read_probes(records.read(self.results), {self.run: "PPM"})
         self.assertEqual(list(rows["radius"]), [10, 5])
         self.assertTrue(rows["density"].isna().iloc[1])
         self.assertAlmostEqual(rows["radiance"].iloc[0], 0.2)
@@ -59,7 +59,7 @@ class Probes(unittest.TestCase):
 
     def test_labels_are_those_of_the_records(self):
         self.write([self.row(1)])
-        rows = records.read_records(self.results)
+        rows = records.read(self.results).rows
         self.assertEqual(set(rows["method"]), {"PPM"})
 
 

@@ -19,7 +19,7 @@ class Folder(unittest.TestCase):
 
     def read(self, made, **options):
         synthetic.write_csv(self.results, made, **options)
-        return records.read_records(self.results)
+        return records.read(self.results).rows
 
 
 def constant(value):
@@ -47,7 +47,7 @@ class Reading(Folder):
 
     def refused(self, *parts):
         with self.assertRaises(files.InputError) as caught:
-            records.read_records(self.results)
+            records.read(self.results).rows
         for part in parts:
             self.assertIn(part, str(caught.exception))
 
@@ -125,6 +125,14 @@ class Methods(Folder):
 
     def test_one_method_is_named_by_its_integrator(self):
         self.assertEqual(self.labels({}), ["PPM"])
+
+    def test_runs_with_other_numbers_of_threads_are_repetitions_too_even_within_a_run(self):
+        made = synthetic.rows(constant(1.0), seeds=[1, 2], passes=[1, 2])
+        for row in made:
+            row["threads"] = "2" if row["seed"] == "1" else row["pass"]
+        rows = self.read(made)
+        self.assertEqual(set(rows["method"]), {"PPM"})
+        self.assertEqual(records.table_settings(rows)["threads"], "2;1")
 
     def test_seeds_are_repetitions_of_one_method(self):
         rows = self.read(synthetic.rows(constant(1.0), seeds=[1, 2, 3]))
@@ -215,39 +223,55 @@ class Aggregation(Folder):
 
 
 class Runs(Folder):
+    def written(self, *arguments, **options):
+        """The records of a run "r" and what it left."""
+        synthetic.write_csv(self.results, [{**row, "run": "r"} for row in synthetic.rows(constant(1.0), seeds=[1])])
+        synthetic.write_run(self.results, "r", *arguments, **options)
+        found = records.read(self.results)
+        return found, found.run("r")
+
     def test_reads_what_a_run_wrote(self):
-        synthetic.write_run(self.results, "r", [1, 64], None)
-        record = records.read_run(self.results, "r")
-        self.assertEqual([snapshot["pass"] for snapshot in record["snapshots"]], [1, 64])
-        self.assertEqual(records.reference_files(self.results, record), [])
+        found, run = self.written([1, 64], None)
+        self.assertEqual(run.snapshots, {})    # which are not there
+        self.assertIsNone(records.reference_of(found, run.description))
+        file = self.results / "runs/r/snapshots/pass-000064.exr"
+        file.parent.mkdir()
+        file.touch()
+        self.assertEqual(records.read(self.results).run("r").snapshots, {64: file})
 
     def test_refuses_a_run_that_is_not_there_or_not_json_or_something_else(self):
+        found, _ = self.written([], None)
+        self.assertTrue(found.has_run("r"))
+        self.assertFalse(found.has_run("none"))
         with self.assertRaisesRegex(files.InputError, "run.json: cannot be read"):
-            records.read_run(self.results, "none")
-        file = synthetic.write_run(self.results, "r", [], None) / "run.json"
+            found.run("none")
         for text, message in [("{", "run.json: is not JSON"), ("[]", "expected \"snapshots\""),
                               ('{"snapshots": [{"pass": "1", "file": "x"}]}', "expected \"snapshots\""),
-                              ('{"snapshots": [], "reference": "x"}', "expected \"reference\"")]:
-            file.write_text(text)
+                              ('{"snapshots": [], "reference": "x"}', "expected \"reference\""),
+                              ('{"snapshots": [], "reference": {"path": 5}}', "expected \"reference\""),
+                              ('{"snapshots": [], "reference": {"path": "x", "key": 5}}', "expected \"reference\""),
+                              ('{"snapshots": [], "working_directory": 5}', "expected \"working_directory\""),
+                              ('{"snapshots": [], "files": []}', "expected \"files\"")]:
+            (self.results / "runs/r/run.json").write_text(text)
             with self.assertRaisesRegex(files.InputError, message):
-                records.read_run(self.results, "r")
+                records.read(self.results).run("r")
 
     def test_a_reference_is_found_from_the_folder_in_which_the_run_was_started(self):
         start = self.results / "start"
         (start / "reference/box").mkdir(parents=True)
-        synthetic.write_run(self.results, "r", [], "reference/box", working_directory=str(start))
-        record = records.read_run(self.results, "r")
-        self.assertEqual(records.reference_files(self.results, record), [])
+        found, run = self.written([], "reference/box", working_directory=str(start))
+        judge = records.reference_of(found, run.description)
+        self.assertEqual((judge.path, judge.halves, judge.why_not), ("reference/box", [], "is not there"))
         for half in ["half_a.exr", "half_b.exr"]:
             (start / "reference/box" / half).touch()
-        self.assertEqual(records.reference_files(self.results, record),
+        self.assertEqual(records.reference_of(found, run.description).halves,
                          [start / "reference/box/half_a.exr", start / "reference/box/half_b.exr"])
 
     def test_a_single_image_is_a_reference_too(self):
         image = self.results / "other-renderer.exr"
         image.touch()
-        synthetic.write_run(self.results, "r", [], str(image))
-        self.assertEqual(records.reference_files(self.results, records.read_run(self.results, "r")), [image])
+        found, run = self.written([], str(image))
+        self.assertEqual(records.reference_of(found, run.description).halves, [image])
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 hold: tested with real keys and mouse moves in a headless Chromium, pixel by pixel against pictures.to_srgb."""
 
 import base64
+import html
 import html.parser
 import json
 import subprocess
@@ -20,8 +21,10 @@ try:
     from matplotlib import pyplot
 
     import pictures
+    import records
     import report
     import strip
+    import style
     from test_strip import layered, write_exr
 except ImportError as error:
     raise unittest.SkipTest(f"{error} (Debian: python3-openimageio)")
@@ -57,9 +60,16 @@ def make_results(results, scenes=("cornell-box",), passes=(1, 64), reference="re
     return shown
 
 
-def write_figure(results, name):
+def write_figure(results, name, of=None):
+    """A figure that says that it was made from the records which are there, or from others."""
     (results / "figures").mkdir(exist_ok=True)
-    pyplot.imsave(results / "figures" / name, numpy.zeros((4, 4, 3)))
+    pyplot.imsave(results / "figures" / name, numpy.zeros((4, 4, 3)), metadata={style.RECORDS: of or records.read(results).hash})
+
+
+def write_derived(results, name, text):
+    """A CSV that says the same."""
+    header, *lines = text.strip().split("\n")
+    (results / name).write_text("\n".join([f"{header},records", *(f"{line},{records.read(results).hash}" for line in lines)]) + "\n")
 
 
 class Loads(html.parser.HTMLParser):
@@ -163,9 +173,9 @@ class Page(InFolder):
 
     def test_tables_of_other_tools_are_shown_and_the_decomposition_at_its_last_pass(self):
         make_results(self.results)
-        (self.results / "fits.csv").write_text("scene,method,slope\nbox,a<b,-0.6666666\nbox,PPM,0.5\n")
-        (self.results / "decomposition.csv").write_text(
-            "scene,point,pass,variance\nbox,PM,1,0.0711\nbox,PM,64,0.0722\nbox,PPM,1,0.0733\nbox,PPM,32,0.0744\n")
+        write_derived(self.results, "fits.csv", "scene,method,slope\nbox,a<b,-0.6666666\nbox,PPM,0.5\n")
+        write_derived(self.results, "decomposition.csv",
+                      "scene,point,pass,variance\nbox,PM,1,0.0711\nbox,PM,64,0.0722\nbox,PPM,1,0.0733\nbox,PPM,32,0.0744\n")
         text = self.written_page()
         self.assertEqual(self.row_of(text, "Fits (fits.csv)", "a<b"), ["a<b", "−0.667"])
         self.assertIn("in all rows scene = box", text)
@@ -179,21 +189,62 @@ class Page(InFolder):
         columns = ["scene", "point", *synthetic.records.SETTINGS, "slope"]
         lines = [",".join({**synthetic.BASE, **settings, "point": "p", "slope": slope}[column] for column in columns)
                  for settings, slope in [(synthetic.PM_RADIUS, "-0.25"), ({"alpha": "0.7"}, "-0.5")]]
-        (self.results / "fits.csv").write_text("\n".join([",".join(columns), *lines]) + "\n")
+        write_derived(self.results, "fits.csv", "\n".join([",".join(columns), *lines]))
         self.assertEqual(self.row_of(self.written_page(), "Fits (fits.csv)", "PM, radius"), ["PM, radius", "−0.25"])
 
     def test_what_is_missing_is_said(self):
-        make_results(self.results, passes=(), reference=None)
-        text = self.written_page()
-        for expected in ["No figures", "no snapshots of PPM (seed 1)", "cornell-box: no reference"]:
-            self.assertIn(expected, text)
-        self.assertNotIn('id="viewer"', text)
         make_results(self.results, reference="somewhere/else")
         for file in self.results.glob("somewhere/else/*"):
             file.unlink()
+        for file in self.results.glob("runs/0-ppm-seed-*/run.json"):
+            record = json.loads(file.read_text())
+            file.write_text(json.dumps({**record, "snapshots": []}))
         text = self.written_page()
-        self.assertIn("the reference is not found at somewhere/else", text)
+        self.assertIn("cornell-box: the reference somewhere/else is not there.", text)
+        self.assertIn("cornell-box: no snapshots of PPM.", text)
         self.assertIn('id="viewer"', text)
+
+    def test_nothing_is_missing_from_what_has_no_images_and_no_reference(self):
+        make_results(self.results, passes=(), reference=None, change=lambda row: row.update(mse="", mse_unbiased=""))
+        text = self.written_page()
+        self.assertNotIn('id="missing"', text)
+        self.assertNotIn('id="viewer"', text)
+        self.assertIn("there is no reference, so there are none", text)
+
+    def test_what_was_made_from_other_records_is_named_and_not_shown(self):
+        make_results(self.results)
+        write_figure(self.results, "new.png")
+        write_figure(self.results, "old.png", of="0123456789abcdef" * 2)
+        pyplot.imsave(self.results / "figures/unmarked.png", numpy.zeros((4, 4, 3)))
+        (self.results / "figures/cut.png").write_bytes((self.results / "figures/new.png").read_bytes()[:40])
+        (self.results / "fits.csv").write_text("scene,slope\nbox,0.1234\n")
+        write_derived(self.results, "best-alphas.csv", "scene,best_alpha\nbox,0.5678\n")
+        text = self.written_page()
+        self.assertIn("<figcaption>new.png</figcaption>", text)
+        self.assertIn("0.5678", text)
+        for stale in ["figures/old.png", "figures/unmarked.png", "figures/cut.png", "fits.csv"]:
+            self.assertIn(f"<li>{stale}: was not made from the records that are here now, so it is not shown.</li>", text)
+        self.assertNotIn("<figcaption>old.png</figcaption>", text)
+        self.assertNotIn("0.1234", text)
+        synthetic.write_csv(self.results, synthetic.rows(lambda *_: 0.01))    # now all of it is
+        text = self.written_page()
+        self.assertIn("figures/new.png: was not made", text)
+        self.assertNotIn("0.5678", text)
+
+    def test_the_memory_of_a_process_is_a_methods_own_where_it_ran_alone(self):
+        make_results(self.results, change=lambda row: row.update(peak_rss_mib="571"))
+        for file in self.results.glob("runs/*/run.json"):
+            together = 3 if "photonmapper" in str(file) else 1
+            file.write_text(json.dumps({**json.loads(file.read_text()), "runs_together": together}))
+        text = self.written_page()
+        self.assertEqual(self.row_of(text, "cornell-box: costs", "PPM")[-1], "571")
+        self.assertEqual(self.row_of(text, "cornell-box: costs", "PM, radius")[-1], "with 2 others")
+
+    def test_errors_are_called_what_they_are(self):
+        make_results(self.results)
+        self.assertIn("RMSE, without the reference's noise", html.unescape(self.written_page()))
+        make_results(self.results, change=lambda row: row.update(mse_unbiased=""))
+        self.assertIn("RMSE, with the reference's noise", html.unescape(self.written_page()))
 
     def test_images_are_of_as_many_seeds_as_asked_for_and_layers_are_kept_once(self):
         make_results(self.results)
@@ -206,7 +257,8 @@ class Page(InFolder):
             self.assertEqual([[shot["seed"] for shot in image["seeds"]] for image in images], [seeds] * 4)
             # Emission and direct light are the same everywhere; gathered light is another one in each, and the reference's.
             self.assertEqual(len(scene["pixels"]), 2 + 4 * len(seeds) + 1)
-            self.assertEqual("images of 1 of the 2 seeds of PPM" in text, len(seeds) == 1)
+            self.assertEqual("Of up to 2 seeds of a method, those of the lowest 1 are here" in text, len(seeds) == 1)
+            self.assertNotIn('id="missing"', text)
         self.assertEqual(synthetic.run(report, self.results, "--seeds", "0")[0], 2)
 
     def test_records_alone_give_a_page(self):

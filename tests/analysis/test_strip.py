@@ -106,7 +106,7 @@ class Strip(unittest.TestCase):
         numpy.testing.assert_allclose(shown[0], [[0.735357, 0, 1], [1, 0, 1], [1, 0, 0.01292]], atol=1e-6)
 
     def test_one_method_of_each_kind_is_shown_unless_others_are_asked_for(self):
-        rows = records.read_records(self.make_results())
+        rows = records.read(self.make_results()).rows
         labels = records.methods_in_order(rows)
         self.assertEqual(strip.shown_methods(rows, labels, [], False), ["PM, radius", "PPM, α = 0.5"])
         self.assertEqual(strip.shown_methods(rows, labels, [0.9], False), ["PM, radius", "PPM, α = 0.9"])
