@@ -33,6 +33,7 @@ void compare_files(const CompareOptions& options) {
         throw InputError(options.image.string(),
                          fmt::format("the image is {}x{}, the reference {}x{}", image.width, image.height,
                                      reference.half_a.width, reference.half_a.height));
+    if (const auto warning = warning_about(reference)) print_message("photonlab: {}\n", *warning);
     const bool carried = metadata["photonlab.direct"] == name_of(DirectMode::Photons);
     const auto errors = judge(image, reference, options.component, carried);
     if (!errors)

@@ -35,18 +35,28 @@ void make_reference(ReferenceOptions options) {
     options.settings.is_interrupted = is_interrupted;
     std::uint64_t samples_left = 0;
     Progress progress(2 * options.settings.samples);
-    const Json json =
-        add_reference_samples(scene, options.settings, options.output, [&](std::uint64_t done, std::uint64_t total) {
-            samples_left = (total - done) / 2;
-            progress.show(done, fmt::format("sample {} of {}, both halves; saved about every {:.0f} s", done, total,
-                                            options.settings.seconds_between_saves));
-        });
+    const auto show = [&](std::uint64_t done, std::uint64_t total) {
+        samples_left = (total - done) / 2;
+        progress.show(done, fmt::format("sample {} of {}, both halves; saved about every {:.0f} s", done, total,
+                                        options.settings.seconds_between_saves));
+    };
+    const bool adds = options.settings.samples > 0;
+    const Json json = adds ? add_reference_samples(scene, options.settings, options.output, show)
+                           : compare_reference_with_photons(scene, options.settings, options.output);
     progress.clear();
+    if (!adds && is_interrupted()) throw Interrupted("interrupted; nothing was compared");
     print_output("{}: {} samples a half and sample position, {}x{}, {} so far\n", options.output.string(),
                  json.at("samples_per_half").get<std::uint64_t>(), json.at("width").get<int>(),
                  json.at("height").get<int>(), describe_duration(json.at("seconds").get<double>()));
     for (const auto& [component, floor] : json.at("floor_mse").items())
         if (floor.is_number()) print_output("noise floor (MSE) of {:<9} {:.6g}\n", component, floor.get<double>());
+    const Json& check = json.at("check");
+    print_output("light by photons: {}: {}\n", check.at("verdict").get<std::string>(),
+                 check.at("why").get<std::string>());
+    if (check.at("verdict") == "disputed")
+        print_output(
+            "what is missing is in no noise floor; --integrator ppm, into another folder, makes a reference of "
+            "photons\n");
     print_output("wrote {}\n", (options.output / "reference.json").string());
     if (samples_left > 0)
         throw Interrupted(fmt::format("interrupted, and saved; --samples {} adds the rest", samples_left));
@@ -66,9 +76,11 @@ void add_reference_command(CLI::App& app) {
     command->add_option("--photons", settings.photons_per_pass, "ppm: paths emitted a pass [1000000]");
     command->add_option("--alpha", settings.alpha, "ppm: of the schedule of Knaus and Zwicker [2/3]");
     command
-        ->add_option("--samples", settings.samples,
-                     "to add to each half: paths a sample position, or passes of ppm [1024]")
-        ->check(CLI::Range(1u, 0x7fffffffu));
+        ->add_option(
+            "--samples", settings.samples,
+            "to add to each half: paths a sample position, or passes of ppm; 0 only compares what is there with "
+            "the light that photons find [1024]")
+        ->check(CLI::Range(0u, 0x7fffffffu));
     command->add_option("--resolution", options->resolution, "WIDTHxHEIGHT in place of the scene file's");
     command->add_option("--samples-per-pixel", settings.samples_per_pixel, "sample positions, a perfect square [1]");
     command->add_option("--max-depth", options->max_depth,

@@ -263,6 +263,8 @@ void render(const RenderOptions& options) {
 
     print_summary(shown, settings, scene, hit_points.points.size(), errors);
     for (const std::string& reason : why_images_are_plain(scene, hit_points)) print_output("note        {}\n", reason);
+    if (const auto warning = reference ? warning_about(*reference) : std::nullopt)
+        print_output("note        {}\n", *warning);
     print_output("wrote       {}\n", options.output.string());
     for (const std::string& file : {options.png, options.csv})
         if (!file.empty()) print_output("wrote       {}\n", file);

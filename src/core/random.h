@@ -27,6 +27,7 @@ enum class RandomPurpose : std::uint8_t {
     ReferencePhotonsB = 8,
     ReferenceDirectA = 9,
     ReferenceDirectB = 10,
+    ReferenceCheck = 11,
 };
 
 class RandomStream {

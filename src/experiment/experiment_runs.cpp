@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <set>
 #include <thread>
 
 #include "core/file_lock.h"
@@ -83,7 +84,7 @@ public:
     GroupSurroundings(const Experiment& experiment, const PreparedExperiment& prepared)
         : experiment_(experiment), prepared_(prepared) {}
 
-    /// Says of a new scene why its images are plain, if they are.
+    /// Says of a new scene why its images are plain, if they are, and of a new reference that it is disputed, if it is.
     void move_to(const PreparedRun& run, Progress& progress) {
         const std::size_t scene_index = run.run->scene;
         const SceneEntry& entry = experiment_.scenes[scene_index];
@@ -97,7 +98,7 @@ public:
             for (const std::string& reason : why_images_are_plain(scene, hit_points_))
                 progress.finished(entry.name + ": " + reason);
         if (entry.reference && (!reference_ || depth_ != max_depth))
-            reference_ = load_reference(*entry.reference, subject_of(scene, experiment_.samples_per_pixel, max_depth));
+            load_reference_of(entry, subject_of(scene, experiment_.samples_per_pixel, max_depth), progress);
         scene_ = scene_index;
         cutoff_ = cutoff;
         depth_ = max_depth;
@@ -107,10 +108,17 @@ public:
     const Reference* reference() const { return reference_ ? &*reference_ : nullptr; }
 
 private:
+    void load_reference_of(const SceneEntry& entry, const ReferenceSubject& subject, Progress& progress) {
+        reference_ = load_reference(*entry.reference, subject);
+        const auto warning = warning_about(*reference_);
+        if (warning && warned_of_.insert(*entry.reference).second) progress.finished(entry.name + ": " + *warning);
+    }
+
     const Experiment& experiment_;
     const PreparedExperiment& prepared_;
     HitPoints hit_points_;
     std::optional<Reference> reference_;
+    std::set<std::filesystem::path> warned_of_;
     std::optional<std::size_t> scene_;
     double cutoff_ = 0.0;
     int depth_ = -1;

@@ -83,9 +83,17 @@ Reference load_reference(const std::filesystem::path& path, const std::optional<
     if (subject) require_subject(path, json, *subject);
     reference.key = key_with_samples(json);
     reference.floor_mse = json.at("floor_mse").at("total").get<double>();
+    if (json.contains("check"))
+        reference.check = {json.at("check").at("verdict").get<std::string>(),
+                           json.at("check").at("why").get<std::string>()};
     reference.half_a = read_reference_half(path, json, "half_a");
     reference.half_b = read_reference_half(path, json, "half_b");
     return reference;
+}
+
+std::optional<std::string> warning_about(const Reference& reference) {
+    if (reference.check.verdict != "disputed") return std::nullopt;
+    return fmt::format("the reference {} is disputed: {}", reference.path.string(), reference.check.why);
 }
 
 std::vector<ColorD> component_pixels(const Image& image, std::string_view component) {

@@ -31,10 +31,17 @@ inline constexpr int reference_version = 1;
 /// Hash of the subject and the version; not of seed or threads.
 std::string reference_key(const ReferenceSubject& subject);
 
+/// Whether photons agree with the paths of a reference on how much light there is: see reference_check.h.
+struct ReferenceCheck {
+    std::string verdict = "not compared";  ///< also of an EXR, and of a folder made before there was a comparison
+    std::string why;                       ///< a sentence with the numbers
+};
+
 struct Reference {
     std::filesystem::path path;
     std::string key;  ///< of a folder: reference_key() and the samples in it; of an EXR: the file's hash
     std::optional<double> floor_mse;  ///< of the whole image; empty for an EXR
+    ReferenceCheck check;
     Image half_a;
     Image half_b;  ///< no layers: half_a is the whole reference
 };
@@ -49,6 +56,9 @@ std::string check_reference(const std::filesystem::path& path, const ReferenceSu
 
 /// Reads a folder or an EXR; with a subject, refuses what is not a reference of it.
 Reference load_reference(const std::filesystem::path& path, const std::optional<ReferenceSubject>& subject);
+
+/// What whoever judges by a reference should be told once: that it is disputed. Empty where it is not.
+std::optional<std::string> warning_about(const Reference& reference);
 
 /// Errors of one component of an image; empty when the reference does not have it, and for `direct` when photons carry
 /// direct light: `gathered` is then judged against the reference's direct + gathered.

@@ -6,12 +6,14 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <variant>
 
 #include "core/error.h"
 #include "core/file_lock.h"
 #include "core/files.h"
 #include "core/hash.h"
 #include "core/number_in.h"
+#include "experiment/reference_check.h"
 #include "experiment/version.h"
 #include "image/exr.h"
 #include "integrators/registry.h"
@@ -185,6 +187,57 @@ Image picture_of(const Image& image) {
     return {image.width, image.height, {{std::string(total_component), {sum.begin(), sum.end()}}}};
 }
 
+/// What photons say of the light that a reference of so many paths shows, or, in words, why they were not asked.
+std::variant<LightByPhotons, std::string> ask_photons(const Scene& scene, const HitPoints& hit_points,
+                                                      const ReferenceSettings& settings, std::uint64_t paths) {
+    if (settings.integrator != "path") return "it is made by photons itself";
+    if (scene.emitters.empty()) return "there is no light";
+    if (hit_points.points.empty()) return "there is no surface to gather at in the picture";
+    const auto answer = measure_light_by_photons(
+        scene, hit_points, {paths, settings.max_depth, settings.seed, settings.threads, settings.is_interrupted});
+    if (!answer) return "it was interrupted";
+    return *answer;
+}
+
+Json check_of(const std::variant<LightByPhotons, std::string>& photons, const Image& half_a, const Image& half_b) {
+    const auto* light = std::get_if<LightByPhotons>(&photons);
+    return light ? check_json(half_a, half_b, *light) : not_made(std::get<std::string>(photons));
+}
+
+ReferenceSubject subject_of(const Scene& scene, const ReferenceSettings& settings) {
+    return {scene.hash, scene.camera.width, scene.camera.height, settings.samples_per_pixel, settings.max_depth};
+}
+
+FileLock lock_reference(const std::filesystem::path& folder) {
+    auto lock = FileLock::try_lock(folder / "lock");
+    if (!lock) throw InputError(folder.string(), "another process is adding samples to this reference");
+    return std::move(*lock);
+}
+
+/// The part of reference.json that says what it is a reference of, and how it is made.
+Json subject_json(const Scene& scene, const ReferenceSettings& settings) {
+    const ReferenceSubject subject = subject_of(scene, settings);
+    const MethodSettings method = method_of(settings);
+    return {{"schema", 1},
+            {"key", reference_key(subject)},
+            {"reference_version", reference_version},
+            {"integrator", method.integrator},
+            {"method", describe_method(method)},
+            {"estimate", method.integrator == "path" ? "unbiased" : "consistent, not unbiased"},
+            {"scene", {{"name", scene.name}, {"file", settings.scene_file.string()}, {"hash", scene.hash}}},
+            {"width", subject.width},
+            {"height", subject.height},
+            {"samples_per_pixel", subject.samples_per_pixel},
+            {"max_depth", subject.max_depth},
+            {"seed", settings.seed}};
+}
+
+void set_check(Json& json, const Json& check) {
+    json["check"] = check;
+    if (json.value("integrator", "path") == "path")
+        json["estimate"] = check.at("verdict") == "disputed" ? "unbiased, but disputed" : "unbiased";
+}
+
 double stored_seconds(const std::filesystem::path& folder) {
     return std::filesystem::exists(folder / "reference.json") ? read_reference_json(folder).value("seconds", 0.0) : 0.0;
 }
@@ -194,18 +247,13 @@ double stored_seconds(const std::filesystem::path& folder) {
 Json add_reference_samples(const Scene& scene, const ReferenceSettings& settings, const std::filesystem::path& folder,
                            const SampleListener& on_sample) {
     require_perfect_square(settings.samples_per_pixel);
-    const ReferenceSubject subject{scene.hash, scene.camera.width, scene.camera.height, settings.samples_per_pixel,
-                                   settings.max_depth};
-    const std::string key = reference_key(subject);
+    const std::string key = reference_key(subject_of(scene, settings));
     const MethodSettings method = method_of(settings);
-    const bool is_unbiased = method.integrator == "path";
     require_writable(folder / "reference.json");
-    const auto lock = FileLock::try_lock(folder / "lock");
-    if (!lock) throw InputError(folder.string(), "another process is adding samples to this reference");
+    const FileLock lock = lock_reference(folder);
     const double seconds_before = stored_seconds(folder);
 
     const HitPoints hit_points = trace_hit_points(scene, settings.samples_per_pixel, settings.threads);
-    const auto began = std::chrono::steady_clock::now();
     const auto half = [&](const HalfPurposes& purposes) {
         return GrowingHalf(half_file(folder, purposes.name), key, method,
                            IntegratorContext{.scene = scene,
@@ -219,35 +267,33 @@ Json add_reference_samples(const Scene& scene, const ReferenceSettings& settings
     GrowingHalf half_a = half(half_purposes[0]);
     GrowingHalf half_b = half(half_purposes[1]);
 
+    const std::uint64_t target = std::max(half_a.samples(), half_b.samples()) + settings.samples;
+    const auto photons = ask_photons(scene, hit_points, settings, 2 * target * hit_points.points.size());
+    const auto began = std::chrono::steady_clock::now();
+
     Json json;
     const auto save = [&](bool picture_only) {
-        const Image image_a = picture_only ? picture_of(half_a.mean()) : half_a.mean();
-        const Image image_b = picture_only ? picture_of(half_b.mean()) : half_b.mean();
+        Image image_a = half_a.mean();
+        Image image_b = half_b.mean();
+        const Json check = check_of(photons, image_a, image_b);
+        if (picture_only) {
+            image_a = picture_of(image_a);
+            image_b = picture_of(image_b);
+        }
         const std::string checksum_a = half_a.save(image_a);
         const std::string checksum_b = half_b.save(image_b);
+        json = subject_json(scene, settings);
+        json["samples_per_half"] = half_a.samples();
+        json["seconds"] =
+            seconds_before + std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+        json["floor_mse"] = noise_floor(image_a, image_b);
+        set_check(json, check);
+        json["checksums"] = {{"half_a", checksum_a}, {"half_b", checksum_b}};
         const ProgramVersion program = program_version();
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-        json = Json{{"schema", 1},
-                    {"key", key},
-                    {"reference_version", reference_version},
-                    {"integrator", method.integrator},
-                    {"method", describe_method(method)},
-                    {"estimate", is_unbiased ? "unbiased" : "consistent, not unbiased"},
-                    {"scene", {{"name", scene.name}, {"file", settings.scene_file.string()}, {"hash", scene.hash}}},
-                    {"width", subject.width},
-                    {"height", subject.height},
-                    {"samples_per_pixel", subject.samples_per_pixel},
-                    {"max_depth", subject.max_depth},
-                    {"seed", settings.seed},
-                    {"samples_per_half", half_a.samples()},
-                    {"seconds", seconds_before + seconds},
-                    {"floor_mse", noise_floor(image_a, image_b)},
-                    {"checksums", {{"half_a", checksum_a}, {"half_b", checksum_b}}},
-                    {"program", {{"version", program.version}, {"commit", program.commit}}}};
+        json["program"] = {{"version", program.version}, {"commit", program.commit}};
         write_text_file(folder / "reference.json", json.dump(2) + "\n");
     };
 
-    const std::uint64_t target = std::max(half_a.samples(), half_b.samples()) + settings.samples;
     const std::uint64_t before = half_a.samples() + half_b.samples();
     const std::uint64_t to_do = 2 * target - before;
     auto saved = began;
@@ -266,6 +312,25 @@ Json add_reference_samples(const Scene& scene, const ReferenceSettings& settings
         }
     }
     save(settings.picture_only && !is_interrupted);
+    return json;
+}
+
+Json compare_reference_with_photons(const Scene& scene, const ReferenceSettings& settings,
+                                    const std::filesystem::path& folder) {
+    read_reference_json(folder);  // before there is a lock in a folder that is none
+    const FileLock lock = lock_reference(folder);
+    Json json = read_reference_json(folder);
+    const Reference reference = load_reference(folder, subject_of(scene, settings));
+    ReferenceSettings made = settings;
+    made.integrator = json.value("integrator", "path");
+    made.seed = json.value("seed", settings.seed);
+    const HitPoints hit_points = trace_hit_points(scene, settings.samples_per_pixel, settings.threads);
+    const std::uint64_t samples = json.at("samples_per_half").get<std::uint64_t>();
+    const auto photons = ask_photons(scene, hit_points, made, 2 * samples * hit_points.points.size());
+    if (settings.is_interrupted()) return json;
+    set_check(json, reference.half_a.find(gathered_layer) ? check_of(photons, reference.half_a, reference.half_b)
+                                                          : not_made("it holds the picture without its layers"));
+    write_text_file(folder / "reference.json", json.dump(2) + "\n");
     return json;
 }
 
@@ -298,7 +363,12 @@ Json read_reference_json(const std::filesystem::path& folder) {
         require_whole("reference_version", 0, most);
         require_whole("samples_per_half", 1, std::numeric_limits<std::int64_t>::max());
         json.at("key").get<std::string>();
+        if (json.contains("integrator")) json.at("integrator").get<std::string>();
+        if (json.contains("seed") && !json.at("seed").is_number_unsigned())
+            throw InputError(file.string(), "seed: expected a whole number of at least 0");
         require_not_negative(json.at("floor_mse").at("total"), "floor_mse: total");
+        if (json.contains("check"))
+            for (const char* name : {"verdict", "why"}) json.at("check").at(name).get<std::string>();
         if (json.contains("seconds")) require_not_negative(json.at("seconds"), "seconds");
         for (const std::string_view half : halves) json.at("checksums").at(std::string(half)).get<std::string>();
     } catch (const Json::exception& error) {

@@ -4,7 +4,8 @@
 // can be joined, from 1.5 footprints on: consistent, not unbiased, and reference.json says so.
 //
 //     half_a.exr, half_b.exr    mean over the half's samples, as layers; how many and of what is in their metadata
-//     reference.json            how it was made, its key, its noise floor, and the halves' checksums
+//     reference.json            how it was made, its key, its noise floor, what photons say of its light
+//                               (reference_check.h), and the halves' checksums
 //
 // Each half is replaced whole and knows its own number of samples, so an interruption between the two loses nothing:
 // the next call brings the lagging half up first. reference.json is written last; where its checksums are not the
@@ -49,6 +50,11 @@ using SampleListener = std::function<void(std::uint64_t done, std::uint64_t tota
 Json add_reference_samples(
     const Scene& scene, const ReferenceSettings& settings, const std::filesystem::path& folder,
     const SampleListener& on_sample = [](std::uint64_t, std::uint64_t) {});
+
+/// Compares what is in `folder` with photons once more, and adds nothing: reference.json alone is written anew, with
+/// the same key. Returns what it now says.
+Json compare_reference_with_photons(const Scene& scene, const ReferenceSettings& settings,
+                                    const std::filesystem::path& folder);
 
 /// Reads reference.json; InputError when it is missing or not one.
 Json read_reference_json(const std::filesystem::path& folder);

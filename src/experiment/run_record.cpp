@@ -72,10 +72,12 @@ Json run_json(const RunRecord& record, const Recorder& recorder, const RunState&
           {"unit_length", scene.unit_length},
           {"bounding_radius", scene.bounding_radius * scene.unit_length},
           {"total_power", scene.total_power * scene.unit_length * scene.unit_length}}},
-        {"reference", reference ? Json{{"path", reference->path.string()},
-                                       {"key", reference->key},
-                                       {"floor_mse", optional_json(reference->floor_mse)}}
-                                : Json()},
+        {"reference", reference
+                          ? Json{{"path", reference->path.string()},
+                                 {"key", reference->key},
+                                 {"floor_mse", optional_json(reference->floor_mse)},
+                                 {"check", {{"verdict", reference->check.verdict}, {"why", reference->check.why}}}}
+                          : Json()},
         {"radius",
          {{"rule", has_radius ? Json(method.radius ? "given" : "auto") : Json()},
           {"initial_mean", has_radius ? optional_json(last.initial_radius) : Json()},
