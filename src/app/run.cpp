@@ -39,7 +39,8 @@ void run(const RunOptions& options) {
     listen_for_interruptions();
     const ExperimentOutcome outcome = run_experiment(experiment, prepared, results, options.continuation);
     print_output("{} runs made, {} were finished already\n", outcome.ran, outcome.skipped);
-    print_output("wrote {}: {} of {} runs\n", outcome.records.string(), outcome.merged, experiment.runs.size());
+    if (outcome.merged)
+        print_output("wrote {}: {} of {} runs\n", outcome.records.string(), *outcome.merged, experiment.runs.size());
     print_output("wrote {}: run.json, iterations.csv and snapshots of each\n", (results / "runs").string());
     if (!outcome.left_out.empty())
         throw InputError(

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "core/descriptor.h"
 #include "core/error.h"
 #include "core/temporary_file.h"
 
@@ -43,10 +44,8 @@ std::string read_text_file(const std::filesystem::path& file, std::uintmax_t lar
 
 void write_text_file(const std::filesystem::path& file, std::string_view text) {
     TemporaryFile temporary(file);
-    std::ofstream stream(temporary.path(), std::ios::binary | std::ios::trunc);
-    stream.write(text.data(), static_cast<std::streamsize>(text.size()));
-    stream.close();
-    if (!stream) throw InputError(file.string(), std::string("cannot be written: ") + std::strerror(errno));
+    if (!temporary.descriptor().write(text))
+        throw InputError(file.string(), std::string("cannot be written: ") + std::strerror(errno));
     temporary.rename();
 }
 
@@ -59,48 +58,30 @@ void make_folder(const std::filesystem::path& folder) {
                          "folder cannot be made: " + (error ? error.message() : "a file has this name"));
 }
 
-namespace {
-
-/// A POSIX file descriptor: streams do not say whether the disk took what they were given.
-class Descriptor {
-public:
-    Descriptor(const std::filesystem::path& file, int flags) : number_(::open(file.c_str(), flags | O_CLOEXEC, 0666)) {}
-    ~Descriptor() {
-        if (number_ >= 0) ::close(number_);
-    }
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-
-    bool is_open() const { return number_ >= 0; }
-    int number() const { return number_; }
-
-private:
-    int number_;
-};
-
-}  // namespace
-
 void AppendedFile::fail(const std::string& what) const {
     throw InputError(file_.string(), what);
 }
 
 void AppendedFile::append(std::string_view text) {
-    const Descriptor descriptor(file_, O_WRONLY | (size_ == 0 ? O_CREAT | O_TRUNC : 0));
-    if (!descriptor.is_open()) fail(std::string("cannot be written: ") + std::strerror(errno));
-    struct stat status;
-    if (::fstat(descriptor.number(), &status) != 0 || static_cast<std::uint64_t>(status.st_size) != size_)
-        fail("was changed by somebody else while it was being written");
-    for (std::size_t done = 0; done < text.size();) {
-        const ssize_t written =
-            ::pwrite(descriptor.number(), text.data() + done, text.size() - done, static_cast<off_t>(size_ + done));
-        if (written < 0 && errno == EINTR) continue;
-        if (written <= 0) {
-            const std::string reason = written < 0 ? std::strerror(errno) : "nothing more is taken";
+    const auto fail_to_write = [&] { fail(std::string("cannot be written: ") + std::strerror(errno)); };
+    if (size_ == 0) {
+        TemporaryFile temporary(file_);
+        if (!temporary.descriptor().write(text)) fail_to_write();
+        identity_ = temporary.descriptor().identity();
+        temporary.rename();
+    } else {
+        const Descriptor descriptor(file_, O_WRONLY);
+        if (!descriptor.is_open()) fail_to_write();
+        struct stat status;
+        if (descriptor.identity() != identity_ || ::fstat(descriptor.number(), &status) != 0 ||
+            static_cast<std::uint64_t>(status.st_size) != size_)
+            fail("was changed by somebody else while it was being written");
+        if (!descriptor.write(text, static_cast<off_t>(size_))) {
+            const std::string reason = std::strerror(errno);
             if (::ftruncate(descriptor.number(), static_cast<off_t>(size_)) != 0)
                 fail("cannot be written: " + reason + "; its last line is incomplete");
             fail("cannot be written: " + reason);
         }
-        done += static_cast<std::size_t>(written);
     }
     size_ += text.size();
     hash_.add(text.data(), text.size());
@@ -111,8 +92,8 @@ void AppendedFile::exchange(StateArchive& archive) {
     archive.exchange(size_);
     archive.exchange(hash);
     if (size_ == 0) return;
+    const Descriptor descriptor(file_, O_RDWR);
     if (!archive.reads()) {
-        const Descriptor descriptor(file_, O_WRONLY);
         if (!descriptor.is_open() || ::fsync(descriptor.number()) != 0)
             fail(std::string("cannot be written: ") + std::strerror(errno));
         return;
@@ -121,17 +102,21 @@ void AppendedFile::exchange(StateArchive& archive) {
     hash_ = RunningHash();
     hash_.add(text.data(), text.size());
     if (hash_.text() != hash) fail("is not the file that was being written");
-    std::filesystem::resize_file(file_, size_);
+    identity_ = descriptor.identity();
+    if (!descriptor.is_open() || ::ftruncate(descriptor.number(), static_cast<off_t>(size_)) != 0)
+        fail(std::string("cannot be written: ") + std::strerror(errno));
 }
 
 void require_writable(const std::filesystem::path& file) {
-    if (std::filesystem::is_directory(file)) throw InputError(file.string(), "expected a file, this is a folder");
-    if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file))
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(file, error);
+    if (std::filesystem::is_directory(status)) throw InputError(file.string(), "expected a file, this is a folder");
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
         throw InputError(file.string(), "expected a file, this is a device or a pipe, which cannot be replaced");
+    if (status.type() == std::filesystem::file_type::none)
+        throw InputError(file.string(), "cannot be written: " + error.message());
     make_folder(file.parent_path());
     const TemporaryFile temporary(file);
-    if (!std::ofstream(temporary.path()))
-        throw InputError(file.string(), std::string("cannot be written: ") + std::strerror(errno));
 }
 
 void require_space(const std::filesystem::path& folder, std::uint64_t bytes, const std::string& what) {

@@ -5,9 +5,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "core/descriptor.h"
 #include "core/state_archive.h"
 
 namespace photonlab {
@@ -35,10 +37,11 @@ void require_space(const std::filesystem::path& folder, std::uint64_t bytes, con
 /// A file that grows by whole pieces: of one that finds no room, nothing stays.
 class AppendedFile {
 public:
-    /// Made, or emptied, by the first append().
+    /// Made, or replaced at once, by the first append().
     explicit AppendedFile(std::filesystem::path file) : file_(std::move(file)) {}
 
-    /// Throws InputError when it cannot be written wholly, or when somebody else removed the file or changed its size.
+    /// Throws InputError when it cannot be written wholly, or when somebody else removed, replaced or
+    /// changed the file.
     void append(std::string_view text);
 
     bool is_empty() const { return size_ == 0; }
@@ -53,6 +56,7 @@ private:
     [[noreturn]] void fail(const std::string& what) const;
 
     std::filesystem::path file_;
+    std::optional<FileIdentity> identity_;  // of what the first append() made
     std::uint64_t size_ = 0;
     RunningHash hash_;  // of what was appended
 };

@@ -88,6 +88,8 @@ bool load(const Checkpoint& checkpoint, const StateExchange& state) {
     if (!std::filesystem::is_regular_file(status))  // a pipe would be waited for
         throw refusal(checkpoint.file.string(), "cannot be read as a checkpoint", checkpoint);
     std::ifstream stream(checkpoint.file, std::ios::binary);
+    // The process that wrote it may have finished, and removed it, since.
+    if (!stream && !std::filesystem::exists(checkpoint.file, error)) return false;
     if (!stream) throw refusal(checkpoint.file.string(), "cannot be read as a checkpoint", checkpoint);
     load_checkpoint(stream, checkpoint.file.string(), checkpoint, state);
     return true;
@@ -122,7 +124,7 @@ void save(const Checkpoint& checkpoint, const StateExchange& state) {
 
 void discard(const Checkpoint& checkpoint) {
     std::filesystem::remove(checkpoint.file);
-    remove_leftovers(checkpoint.file);
+    remove_leftovers(checkpoint.file.parent_path());
 }
 
 bool CheckpointClock::is_due_after_pass() {

@@ -56,6 +56,7 @@ public:
     ExperimentReader(const std::filesystem::path& file, std::optional<SmokeLimits> smoke) : smoke_(smoke) {
         experiment_.file = file;
         experiment_.name = file.stem().string() + (smoke ? "-smoke" : "");
+        experiment_.is_smoke = smoke.has_value();
     }
 
     Experiment read() {

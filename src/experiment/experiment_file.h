@@ -72,7 +72,8 @@ struct ExperimentRun {
 
 struct Experiment {
     std::filesystem::path file;
-    std::string name;  ///< of the file, without .toml
+    std::string name;       ///< of the file, without .toml; with -smoke behind it when it is
+    bool is_smoke = false;  ///< shrunk to SmokeLimits
     std::string title;
     std::vector<SceneEntry> scenes;
     std::vector<ExperimentRun> runs;  ///< scene by scene

@@ -10,6 +10,7 @@
 #include "core/hash.h"
 #include "experiment/progress.h"
 #include "experiment/reference.h"
+#include "experiment/results_folder.h"
 #include "experiment/run_record.h"
 #include "experiment/settings_io.h"
 #include "experiment/time_estimate.h"
@@ -33,7 +34,7 @@ std::vector<const ExperimentRun*> select_runs(const Experiment& experiment, cons
     return selected;
 }
 
-/// Everything that changes what the runs of a point record, but their seed.
+/// Everything that changes what the runs of a point record, but their seed: so neither threads nor the title.
 std::string point_key(const Experiment& experiment, const ExperimentRun& run, const RunSettings& settings,
                       const Scene& scene, const std::string& reference_key) {
     const SceneEntry& entry = experiment.scenes[run.scene];
@@ -42,12 +43,10 @@ std::string point_key(const Experiment& experiment, const ExperimentRun& run, co
     return hash_text(Json{
         {"program", program_version().version},
         {"experiment", experiment.name},
-        {"title", experiment.title},
         {"point", run.point},
         {"settings", settings_json(settings.method)},
         {"passes", settings.passes},
         {"recorded", run.plan.recorded},
-        {"threads", settings.threads},
         {"width", scene.camera.width},
         {"height", scene.camera.height},
         {"samples_per_pixel", experiment.samples_per_pixel},
@@ -95,10 +94,16 @@ ReferenceSubject subject_of(const Scene& scene, int samples_per_pixel, int max_d
 
 PreparedExperiment prepare_experiment(const Experiment& experiment, const std::filesystem::path& results,
                                       const std::optional<std::string>& only) {
+    require_own_results(experiment, results);
+    return prepare_runs(experiment, results, select_runs(experiment, only));
+}
+
+PreparedExperiment prepare_runs(const Experiment& experiment, const std::filesystem::path& results,
+                                const std::vector<const ExperimentRun*>& runs) {
     PreparedExperiment prepared;
     prepared.scenes.resize(experiment.scenes.size());
     std::map<std::pair<std::size_t, int>, std::string> reference_keys;  // by scene and depth
-    for (const ExperimentRun* run : select_runs(experiment, only)) {
+    for (const ExperimentRun* run : runs) {
         const SceneEntry& entry = experiment.scenes[run->scene];
         std::optional<Scene>& scene = prepared.scenes[run->scene];
         if (!scene) {

@@ -22,9 +22,14 @@ struct PreparedExperiment {
 };
 
 /// Loads scenes and checks references for the runs whose name matches `only` (a shell pattern; empty: all). Throws
-/// InputError before anything is run or written. `experiment` must outlive the result.
+/// InputError before anything is run or written, also when the results folder is not the experiment's. `experiment`
+/// must outlive the result.
 PreparedExperiment prepare_experiment(const Experiment& experiment, const std::filesystem::path& results,
                                       const std::optional<std::string>& only = std::nullopt);
+
+/// The same of these runs, whosever the folder is.
+PreparedExperiment prepare_runs(const Experiment& experiment, const std::filesystem::path& results,
+                                const std::vector<const ExperimentRun*>& runs);
 
 /// True when the folder holds a run that finished with this key, and its records are as they were then.
 bool is_finished(const std::filesystem::path& folder, const std::string& key);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <numeric>
 #include <set>
 #include <thread>
 
@@ -14,25 +15,12 @@
 #include "experiment/merged_records.h"
 #include "experiment/progress.h"
 #include "experiment/reference.h"
+#include "experiment/results_folder.h"
 #include "transport/plain_images.h"
 
 namespace photonlab {
 
 namespace {
-
-/// Refuses a folder that holds runs of another experiment, or of this one at its full size when it is run in small:
-/// they have the same names and would be made again.
-void require_same_experiment(const Experiment& experiment, const std::filesystem::path& results) {
-    for (const ExperimentRun& run : experiment.runs) {
-        const std::filesystem::path file = results / "runs" / run.name / "run.json";
-        if (!std::filesystem::exists(file)) continue;
-        const Json json = Json::parse(read_text_file(file), nullptr, false);
-        if (!json.is_object() || json.value("experiment", Json(experiment.name)) == experiment.name) continue;
-        throw InputError(file.string(), fmt::format("this is a run of the experiment {}, not of \"{}\"; choose another "
-                                                    "folder for the results",
-                                                    json.at("experiment").dump(), experiment.name));
-    }
-}
 
 /// Runs of a group that this process may make, while their locks are held.
 struct LockedRuns {
@@ -124,96 +112,156 @@ private:
     int depth_ = -1;
 };
 
+/// Makes the folder the experiment's, and asks whether the records can be written, while nobody else is at it. False
+/// when it was interrupted while another process was.
+bool open_results(const Experiment& experiment, const std::filesystem::path& results,
+                  const ContinuationOptions& options) {
+    const auto lock = FileLock::wait_for(results / "lock", options.is_interrupted);
+    if (!lock) return false;
+    claim_results(experiment, results);
+    require_writable(results / "iterations.csv");
+    return true;
+}
+
+/// What a process left of a finished run that was killed before it had cleared up.
+void clear_up(const Experiment& experiment, const PreparedRun& ready) {
+    const Checkpoint checkpoint = checkpoint_of(experiment, ready);
+    const std::filesystem::path lock_file = ready.folder / "lock";
+    if (!std::filesystem::exists(checkpoint.file) && !std::filesystem::exists(lock_file)) return;
+    if (const auto lock = FileLock::try_lock(lock_file)) discard(checkpoint);
+}
+
+/// Makes the runs that are not finished, group by group.
+class Making {
+public:
+    Making(const Experiment& experiment, const PreparedExperiment& prepared, const std::filesystem::path& results,
+           const ContinuationOptions& options, const std::vector<RunsTogether>& groups)
+        : experiment_(experiment),
+          prepared_(prepared),
+          results_(results),
+          options_(options),
+          group_count_(groups.size()),
+          progress_(
+              std::accumulate(groups.begin(), groups.end(), std::uint64_t{0},
+                              [](std::uint64_t sum, const auto& group) { return sum + group[0]->settings.passes; })),
+          surroundings_(experiment, prepared) {}
+
+    /// What another process is making is asked for again, until all is made: it may end without finishing.
+    void make_all(std::vector<RunsTogether> groups, ExperimentOutcome& outcome) {
+        while (!groups.empty() && !outcome.is_interrupted) {
+            std::vector<RunsTogether> of_others;
+            bool is_anything_done = false;
+            for (const auto& group : groups) {
+                outcome.is_interrupted = options_.is_interrupted();
+                if (outcome.is_interrupted) break;
+                LockedRuns locked = lock_runs(group);
+                is_anything_done = is_anything_done || !locked.runs.empty();
+                const bool is_any_made = make(locked, outcome);
+                if (outcome.is_interrupted) break;
+                if (locked.of_others.empty())
+                    passes_before_ += group[0]->settings.passes;
+                else
+                    of_others.push_back(std::move(locked.of_others));
+                if (!is_any_made) progress_.skip(passes_before_);
+            }
+            groups = std::move(of_others);
+            if (groups.empty() || is_anything_done || outcome.is_interrupted) continue;
+            progress_.skip(passes_before_);
+            progress_.show(passes_before_, "waiting for runs that another process is making");
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+            outcome.is_interrupted = options_.is_interrupted();
+        }
+        progress_.clear();
+    }
+
+private:
+    /// Those that are not made, which others may have done since this process looked. False when none was left.
+    bool make(LockedRuns& locked, ExperimentOutcome& outcome) {
+        const auto first_made =
+            std::stable_partition(locked.runs.begin(), locked.runs.end(),
+                                  [&](const PreparedRun* run) { return !is_made(experiment_, *run, results_); });
+        std::for_each(first_made, locked.runs.end(),
+                      [&](const PreparedRun* run) { discard(checkpoint_of(experiment_, *run)); });
+        outcome.skipped += static_cast<std::size_t>(locked.runs.end() - first_made);
+        locked.runs.erase(first_made, locked.runs.end());
+        if (locked.runs.empty()) return false;
+
+        const PreparedRun& first = *locked.runs[0];
+        surroundings_.move_to(first, progress_);
+        const std::string others = locked.runs.size() > 1 ? fmt::format(" and {} more", locked.runs.size() - 1) : "";
+        const std::string counted = fmt::format("{}{}, one of {} groups", first.run->name, others, group_count_);
+        progress_.show(passes_before_, counted);
+        const GroupOutcome made =
+            run_group({experiment_, *prepared_.scenes[first.run->scene], surroundings_.hit_points(),
+                       surroundings_.reference(), results_, locked.runs},
+                      options_, [&](std::uint64_t pass, bool is_new) {
+                          if (!is_new) progress_.skip(passes_before_ + pass);
+                          progress_.show(passes_before_ + pass, counted);
+                      });
+        outcome.is_interrupted = !made.is_finished;
+        if (outcome.is_interrupted) return true;
+        outcome.ran += locked.runs.size();
+        progress_.finished(made.summary);
+        return true;
+    }
+
+    const Experiment& experiment_;
+    const PreparedExperiment& prepared_;
+    const std::filesystem::path& results_;
+    const ContinuationOptions& options_;
+    const std::size_t group_count_;
+    Progress progress_;
+    GroupSurroundings surroundings_;
+    std::uint64_t passes_before_ = 0;
+};
+
+/// Point by point, while nobody else is at the sums.
+void describe_ensembles(const Experiment& experiment, const PreparedExperiment& prepared,
+                        const std::filesystem::path& results, const ContinuationOptions& options) {
+    if (!experiment.decomposition) return;
+    std::set<std::string> described;
+    for (const PreparedRun& ready : prepared.runs) {
+        if (!described.insert(ready.run->point).second) continue;
+        const auto lock = lock_ensemble(ready, results, options.is_interrupted);
+        if (lock) ensemble_of(experiment, ready, results).describe();
+    }
+}
+
 }  // namespace
 
 ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExperiment& prepared,
                                  const std::filesystem::path& results, const ContinuationOptions& options) {
-    ExperimentOutcome outcome;
-    outcome.records = results / "iterations.csv";
-    require_writable(outcome.records);
-    require_same_experiment(experiment, results);
-    for (const PreparedRun& ready : prepared.runs) {
-        const Checkpoint checkpoint = checkpoint_of(experiment, ready);
-        if (ready.finished) {  // perhaps by a process that was killed before it had cleared up
-            discard(checkpoint);
-            if (std::filesystem::exists(ready.folder / "lock")) FileLock::try_lock(ready.folder / "lock");
-        } else if (!options.fresh) {
-            is_usable(checkpoint);
-        }
-    }
-
+    if (!options.fresh)
+        for (const PreparedRun& ready : prepared.runs)
+            if (!ready.finished) is_usable(checkpoint_of(experiment, ready));
     std::vector<RunsTogether> groups = runs_together(prepared.runs);
-    require_space(results, bytes_on_disk(experiment, prepared, groups),
-                  "what this experiment still writes (snapshots, sums over seeds, checkpoints)");
     if (const auto largest = largest_memory(experiment, prepared, groups)) {
         require_memory(largest->first_run, largest->estimate);
         print_message("memory: {}\n", describe(largest->estimate));
     }
-    for (const PreparedRun& ready : prepared.runs) outcome.skipped += ready.finished;
-    std::uint64_t passes = 0;
-    for (const auto& group : groups) passes += group[0]->settings.passes;
-    Progress progress(passes);
-    std::uint64_t passes_before = 0;
-    GroupSurroundings surroundings(experiment, prepared);
-    const std::size_t group_count = groups.size();
-    // What another process is making is asked for again, until all is made: it may end without finishing.
-    while (!groups.empty() && !outcome.is_interrupted) {
-        std::vector<RunsTogether> of_others;
-        bool is_anything_done = false;
-        for (const auto& group : groups) {
-            LockedRuns locked = lock_runs(group);
-            if (!locked.of_others.empty()) of_others.push_back(locked.of_others);
-            const auto first_made =
-                std::stable_partition(locked.runs.begin(), locked.runs.end(),
-                                      [&](const PreparedRun* run) { return !is_made(experiment, *run, results); });
-            const auto made_by_others = static_cast<std::size_t>(locked.runs.end() - first_made);
-            std::for_each(first_made, locked.runs.end(),
-                          [&](const PreparedRun* run) { discard(checkpoint_of(experiment, *run)); });
-            outcome.skipped += made_by_others;
-            is_anything_done = is_anything_done || !locked.runs.empty();
-            locked.runs.erase(first_made, locked.runs.end());
-            if (locked.runs.empty()) {
-                if (locked.of_others.empty()) passes_before += group[0]->settings.passes;
-                progress.skip(passes_before);
-                continue;
-            }
+    require_space(results, bytes_on_disk(experiment, prepared, groups),
+                  "what this experiment still writes (snapshots, sums over seeds, checkpoints)");
 
-            const PreparedRun& first = *locked.runs[0];
-            surroundings.move_to(first, progress);
-            const std::string others =
-                locked.runs.size() > 1 ? fmt::format(" and {} more", locked.runs.size() - 1) : "";
-            const std::string counted = fmt::format("{}{}, one of {} groups", first.run->name, others, group_count);
-            progress.show(passes_before, counted);
-            const GroupOutcome made =
-                run_group({experiment, *prepared.scenes[first.run->scene], surroundings.hit_points(),
-                           surroundings.reference(), results, locked.runs},
-                          options, [&](std::uint64_t pass, bool is_new) {
-                              if (!is_new) progress.skip(passes_before + pass);
-                              progress.show(passes_before + pass, counted);
-                          });
-            outcome.is_interrupted = !made.is_finished;
-            if (outcome.is_interrupted) break;
-            if (locked.of_others.empty()) passes_before += first.settings.passes;
-            outcome.ran += locked.runs.size();
-            progress.finished(made.summary);
-        }
-        groups = std::move(of_others);
-        if (groups.empty() || is_anything_done || outcome.is_interrupted) continue;
-        progress.skip(passes_before);
-        progress.show(passes_before, "waiting for runs that another process is making");
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
-        outcome.is_interrupted = options.is_interrupted();
+    ExperimentOutcome outcome;
+    outcome.records = results / "iterations.csv";
+    outcome.is_interrupted = !open_results(experiment, results, options);
+    if (outcome.is_interrupted) return outcome;
+    for (const PreparedRun& ready : prepared.runs) {
+        if (!ready.finished) continue;
+        clear_up(experiment, ready);
+        ++outcome.skipped;
     }
-    progress.clear();
-    if (experiment.decomposition)
-        for (const PreparedRun& ready : prepared.runs) ensemble_of(experiment, ready, results).describe();
+    Making(experiment, prepared, results, options, groups).make_all(std::move(groups), outcome);
+    describe_ensembles(experiment, prepared, results, options);
 
     // Runs outside the selection may be finished too: their keys need their scenes, so all are prepared for the merge.
     const bool is_all = prepared.runs.size() == experiment.runs.size();
     const PreparedExperiment all = is_all ? PreparedExperiment{} : prepare_experiment(experiment, results);
     std::vector<RunToMerge> runs;
     for (const PreparedRun& ready : is_all ? prepared.runs : all.runs) runs.push_back({ready.folder, ready.key});
-    const FileLock lock = FileLock::wait_for(results / "lock");
+    const auto lock = FileLock::wait_for(results / "lock", options.is_interrupted);
+    outcome.is_interrupted = outcome.is_interrupted || !lock;
+    if (!lock) return outcome;
     MergedRecords merged = merge_records(experiment.name, results, runs);
     outcome.merged = merged.runs;
     outcome.left_out = std::move(merged.faults);

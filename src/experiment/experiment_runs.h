@@ -1,6 +1,7 @@
 // Runs an experiment: whatever of it is not finished, each run into a folder of its own. Runs of one scene and seed
 // with the same photons a pass run side by side and share them; what is shared is charged in full to each.
 //
+//     RESULTS/experiment.json                   whose folder it is: results_folder.h
 //     RESULTS/iterations.csv, RESULTS/merged.json    all finished runs of the experiment: merged_records.h
 //     RESULTS/runs/RUN/iterations.csv           the run's rows, appended as its passes finish
 //     RESULTS/runs/RUN/snapshots/pass-000064.exr
@@ -9,8 +10,9 @@
 //     RESULTS/probes.csv, RESULTS/runs/RUN/probes.csv    of scenes with probes: what was gathered there, pass by pass
 //     RESULTS/ensembles/POINT/                  with `decomposition`: ensemble.h
 //
-// A finished run is recognised by its key: a hash of its settings, scene, reference and the program's version. One
-// whose key differs from what the experiment asks for now is made again from the start.
+// A finished run is recognised by its key: a hash of its settings, scene, reference and the program's version, but not
+// of the threads, which change nothing. One whose key differs from what the experiment asks for now is made again from
+// the start.
 //
 // Several processes can work on one results folder: each locks the runs that it makes, leaves those of others alone,
 // and waits for them at the end.
@@ -18,6 +20,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "experiment/experiment_file.h"
 #include "experiment/experiment_plan.h"
@@ -29,7 +34,7 @@ struct ExperimentOutcome {
     std::size_t ran = 0;
     std::size_t skipped = 0;            ///< were finished already, or by another process
     std::filesystem::path records;      ///< the merged iterations.csv
-    std::size_t merged = 0;             ///< runs in it
+    std::optional<std::size_t> merged;  ///< runs in it; empty when the merge was interrupted
     bool is_interrupted = false;        ///< what was running is saved
     std::vector<std::string> left_out;  ///< of it: what is wrong with runs that had finished, a line each
 };

@@ -115,6 +115,15 @@ OpenRun open_run(const RunGroup& group, const PreparedRun& prepared) {
         {}};
 }
 
+/// Adds the run's images to the sums over seeds; false when it was interrupted while it waited for another process that
+/// adds to them.
+bool add_to_ensemble(const RunGroup& group, const OpenRun& run, const std::function<bool()>& is_interrupted) {
+    const auto lock = lock_ensemble(*run.prepared, group.results, is_interrupted);
+    if (!lock) return false;
+    ensemble_of(group.experiment, *run.prepared, group.results).add(run.prepared->run->seed, run.recorded_images);
+    return true;
+}
+
 /// Writes what is written once all passes are done; returns a line on it.
 std::string finish(const RunGroup& group, OpenRun& run, const RunState& last) {
     const std::filesystem::path& folder = run.prepared->folder;
@@ -126,11 +135,8 @@ std::string finish(const RunGroup& group, OpenRun& run, const RunState& last) {
         write_text_file(folder / "probes.csv", probes);
         run.record.files["probes.csv"] = stamp_of_text(probes);
     }
-    if (group.experiment.decomposition) {
-        const FileLock lock = FileLock::wait_for(group.results / "ensembles" / (run.prepared->run->point + ".lock"));
-        ensemble_of(group.experiment, *run.prepared, group.results).add(run.prepared->run->seed, run.recorded_images);
+    if (group.experiment.decomposition)
         run.record.ensemble = {"ensembles/" + run.prepared->run->point, run.prepared->point_key};
-    }
     write_text_file(folder / "run.json", with_checksum(run_json(run.record, run.recorder, last, group.scene,
                                                                 group.hit_points, group.reference)));
     discard(run.checkpoint);
@@ -167,6 +173,11 @@ Ensemble ensemble_of(const Experiment& experiment, const PreparedRun& prepared, 
                      {"passes", prepared.run->plan.recorded}});
 }
 
+std::optional<FileLock> lock_ensemble(const PreparedRun& prepared, const std::filesystem::path& results,
+                                      const std::function<bool()>& is_interrupted) {
+    return FileLock::wait_for(results / "ensembles" / (prepared.run->point + ".lock"), is_interrupted);
+}
+
 GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options, const PassListener& on_pass) {
     const std::vector<Probe>& probes = group.experiment.scenes[group.runs.at(0)->run->scene].probes;
     std::vector<OpenRun> open;
@@ -198,9 +209,14 @@ GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options
     bool is_interrupted = false;
     const auto goes_on = [&](std::uint64_t pass, const std::vector<StateExchange>& methods) {
         const bool is_due = clock.is_due_after_pass();
-        if (pass == settings[0].passes) return true;
-        is_interrupted = options.is_interrupted();
-        if (is_due || is_interrupted) {
+        const bool is_last = pass == settings[0].passes;
+        if (!is_last)
+            is_interrupted = options.is_interrupted();
+        else if (group.experiment.decomposition)
+            is_interrupted = !std::all_of(open.begin(), open.end(), [&](const OpenRun& run) {
+                return add_to_ensemble(group, run, options.is_interrupted);
+            });
+        if (is_interrupted || (is_due && !is_last)) {
             count_seconds();
             for (std::size_t i = 0; i < open.size(); ++i) save(open[i].checkpoint, state_of(open[i], methods[i]));
             clock.saved();

@@ -8,9 +8,11 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/file_lock.h"
 #include "experiment/checkpoint.h"
 #include "experiment/ensemble.h"
 #include "experiment/experiment_file.h"
@@ -62,5 +64,9 @@ Checkpoint checkpoint_of(const Experiment& experiment, const PreparedRun& prepar
 
 /// The sums over seeds that a run's images belong to.
 Ensemble ensemble_of(const Experiment& experiment, const PreparedRun& prepared, const std::filesystem::path& results);
+
+/// Their lock, for whoever writes to them; empty when it was interrupted while another process held it.
+std::optional<FileLock> lock_ensemble(const PreparedRun& prepared, const std::filesystem::path& results,
+                                      const std::function<bool()>& is_interrupted);
 
 }  // namespace photonlab

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "tests/app/program.h"
+#include "tests/app/shared_folder.h"
 #include "tests/support/results.h"
 
 namespace photonlab {
@@ -10,9 +11,9 @@ namespace {
 
 class KilledProgram : public ProgramTest {
 protected:
-    /// Starts the program again and again, killing it at a random moment of the next `seconds`, until it ends by itself;
-    /// returns how often it was killed. `seconds` grow with every kill and shrink with every end, so that there are some
-    /// of both however fast the machine is just then.
+    /// Starts the program again and again, killing it at a random moment of the next `seconds`, until it ends by
+    /// itself; returns how often it was killed. `seconds` grow with every kill and shrink with every end, so that there
+    /// are some of both however fast the machine is just then.
     int kill_until_done(const std::vector<std::string>& command, double& seconds) {
         std::uniform_real_distribution<double> share(0.0, 1.0);
         for (int kills = 0;; ++kills) {
@@ -61,6 +62,20 @@ TEST_F(KilledProgram, RenderLosesNothing) {
         EXPECT_EQ(repeatable_rows(folder_ / "whole.csv"), repeatable_rows(folder_ / "killed.csv"));
         EXPECT_FALSE(std::filesystem::exists(folder_ / "killed.checkpoint"));
     }
+}
+
+// Four processes with process ids of their own, as in containers, and a reader that sees whole tables alone.
+TEST_F(SharedFolder, LosesNothingOfManyRuns) {
+    if (!has_own_process_ids()) GTEST_SKIP() << "unshare -pf --mount-proc is not allowed here";
+    constexpr int runs = 2000;
+    write_tiny_runs(runs);
+    WatchedTable table(folder_ / "shared/iterations.csv");
+    EXPECT_GT(make_them_together(4, 700.0, 2011), 20);
+    table.stop();
+    EXPECT_EQ(table.fault(), "");
+    EXPECT_GT(table.reads(), 100u);
+    EXPECT_EQ(leftovers(), "");
+    expect_all_made(runs);
 }
 
 // Samples are added to what a killed one left, and the halves are those of as many samples made at once, but for the

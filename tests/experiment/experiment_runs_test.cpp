@@ -147,12 +147,39 @@ TEST_F(ExperimentRuns, AFolderOfAnotherExperimentIsRefused) {
     run();
     const Experiment small = read_experiment(folder_ / "tiny.toml", SmokeLimits{});
     const std::string before = read_text_file(results() / "iterations.csv");
-    const std::string message =
-        message_of([&] { run_experiment(small, prepare_experiment(small, results()), results(), {}); });
-    EXPECT_NE(message.find("this is a run of the experiment \"tiny\", not of \"tiny-smoke\"; choose another folder"),
-              std::string::npos)
-        << message;
+    EXPECT_EQ(message_of([&] { prepare_experiment(small, results()); }),
+              (results() / "experiment.json").string() +
+                  ": these are results of the experiment \"tiny\", not of \"tiny-smoke\"; choose another folder for "
+                  "the results");
+    EXPECT_EQ(message_of([&] { run_experiment(small, {}, results()); }),
+              message_of([&] { prepare_experiment(small, results()); }));
     EXPECT_EQ(read_text_file(results() / "iterations.csv"), before);
+}
+
+// On another machine there are other numbers of cores; what is made is the same.
+TEST_F(ExperimentRuns, ThreadsAndTitleAreNotWhatARunIsKnownBy) {
+    run("decomposition = true\n");
+    const std::string before = read_text_file(results() / "iterations.csv");
+    std::string text = read_text_file(folder_ / "tiny.toml");
+    text.replace(text.find("threads = 1"), 11, "threads = 3");
+    text.replace(text.find("Does it run?"), 12, "Does it walk?");
+    folder_.write("tiny.toml", text);
+    Experiment experiment = read_experiment(folder_ / "tiny.toml");
+    ExperimentOutcome outcome = run_experiment(experiment, prepare_experiment(experiment, results()), results());
+    EXPECT_EQ(outcome.ran, 0u);
+    EXPECT_EQ(outcome.merged, 8u);
+    EXPECT_EQ(read_text_file(results() / "iterations.csv"), before);
+
+    // What is made now says so, beside rows of other threads, and joins the sums.
+    text.replace(text.find("seeds = 2"), 9, "seeds = 3");
+    folder_.write("tiny.toml", text);
+    experiment = read_experiment(folder_ / "tiny.toml");
+    outcome = run_experiment(experiment, prepare_experiment(experiment, results()), results());
+    EXPECT_EQ(outcome.ran, 4u);
+    for (const Row& row : read_rows(results() / "iterations.csv"))
+        EXPECT_EQ(row.at("threads"), row.at("seed") == "3" ? "3" : "1");
+    for (const char* slot : {"slot-00.exr", "slot-01.exr", "slot-02.exr"})
+        EXPECT_TRUE(std::filesystem::exists(results() / "ensembles/walls_ppm" / slot)) << slot;
 }
 
 TEST_F(ExperimentRuns, OnlyTheSelectedRunsAreMade) {

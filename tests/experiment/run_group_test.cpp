@@ -30,10 +30,9 @@ protected:
                               options);
     }
 
-    /// Interrupts after so many passes of what is run.
-    ContinuationOptions interrupted_after(int passes, double seconds_between_saves = 1e9) {
-        return {.seconds_between_saves = seconds_between_saves,
-                .is_interrupted = [left = passes]() mutable { return --left == 0; }};
+    /// Interrupts when it is asked for this time: before each group, and after each of its passes but the last.
+    ContinuationOptions interrupted_after(int times) {
+        return {.seconds_between_saves = 1e9, .is_interrupted = [left = times]() mutable { return --left == 0; }};
     }
 
     TestFolder folder_;
@@ -42,7 +41,7 @@ protected:
 TEST_F(InterruptedExperiment, LeavesTheSameBits) {
     run("whole");
     int interruptions = 0;
-    while (run("cut", interrupted_after(1 + interruptions % 6)).is_interrupted) ++interruptions;
+    while (run("cut", interrupted_after(1 + interruptions % 8)).is_interrupted) ++interruptions;
     EXPECT_GT(interruptions, 12);
     EXPECT_EQ(difference_of_results(folder_ / "whole", folder_ / "cut"), "");
     EXPECT_EQ(difference_of_results(folder_ / "cut", folder_ / "whole"), "");

@@ -1,0 +1,152 @@
+#include "experiment/results_folder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <optional>
+#include <string>
+
+#include "core/files.h"
+#include "experiment/recorder.h"
+#include "experiment/settings_io.h"
+#include "experiment/version.h"
+
+namespace photonlab {
+
+namespace {
+
+constexpr int schema = 1;
+constexpr std::uintmax_t largest_json = std::uintmax_t{1} << 24;  // bytes
+constexpr const char* advice = "choose another folder for the results";
+
+std::filesystem::path description_file(const std::filesystem::path& results) {
+    return results / "experiment.json";
+}
+
+std::string quoted(const std::string& name) {
+    return Json(name).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string whole_path(const std::filesystem::path& file) {
+    return std::filesystem::absolute(file).lexically_normal().string();
+}
+
+/// What a JSON file says of its experiment; empty when it is not there, or says nothing.
+std::optional<std::string> experiment_in(const std::filesystem::path& file) {
+    if (!std::filesystem::exists(file)) return std::nullopt;
+    const Json json = Json::parse(read_text_file(file), nullptr, false);
+    const auto found = json.is_object() ? json.find("experiment") : json.end();
+    if (found == json.end() || !found->is_string()) return std::nullopt;
+    return found->get<std::string>();
+}
+
+/// Refuses a description that is there and is not of the experiment.
+void require_own_json(const Experiment& experiment, const std::filesystem::path& file) {
+    if (!std::filesystem::exists(file)) return;
+    const auto named = experiment_in(file);
+    if (named && *named == experiment.name) return;
+    throw InputError(file.string(), fmt::format("is there already, and says nothing of the experiment {}; {}",
+                                                quoted(experiment.name), advice));
+}
+
+/// Refuses a table that is there and has no rows of the experiment.
+void require_own_table(const Experiment& experiment, const std::filesystem::path& file) {
+    if (!std::filesystem::exists(file)) return;
+    require_ordinary_file(file);
+    std::ifstream stream(file, std::ios::binary);
+    std::string start(std::size_t{1} << 16, '\0');  // the header and the first row are in it
+    stream.read(start.data(), static_cast<std::streamsize>(start.size()));
+    start.resize(static_cast<std::size_t>(stream.gcount()));
+    const std::string row = start.substr(std::min(start.find('\n'), start.size() - 1) + 1);
+    const bool is_of_this =
+        row.substr(std::min(row.find(','), row.size())).starts_with(fmt::format(",{},", csv_quoted(experiment.name)));
+    if (start.empty()) return;
+    if (!start.starts_with("schema,experiment,run,") || (!row.empty() && !is_of_this))
+        throw InputError(file.string(), fmt::format("is there already, and is no table of the experiment {}; {}",
+                                                    quoted(experiment.name), advice));
+}
+
+/// Refuses a folder that is there and holds something, unless one of its own folders at least says in `file` that it is
+/// the experiment's, and none says that it is another's.
+void require_own_folders(const Experiment& experiment, const std::filesystem::path& folder, const std::string& file) {
+    if (!std::filesystem::exists(folder) || std::filesystem::is_empty(folder)) return;
+    bool is_ours = false;
+    if (std::filesystem::is_directory(folder))
+        for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+            const auto named = experiment_in(entry.path() / file);
+            if (named && *named != experiment.name)
+                throw InputError((entry.path() / file).string(),
+                                 fmt::format("this is of the experiment {}, not of {}; {}", quoted(*named),
+                                             quoted(experiment.name), advice));
+            is_ours = is_ours || named;
+        }
+    if (!is_ours)
+        throw InputError(folder.string(), fmt::format("is there already, and holds nothing of the experiment {}; {}",
+                                                      quoted(experiment.name), advice));
+}
+
+bool has_any_run_of(const Experiment& experiment, const std::filesystem::path& results) {
+    return std::any_of(experiment.runs.begin(), experiment.runs.end(),
+                       [&](const ExperimentRun& run) { return std::filesystem::exists(results / "runs" / run.name); });
+}
+
+bool holds_runs(const std::filesystem::path& results) {
+    return std::filesystem::exists(results / "runs") && !std::filesystem::is_empty(results / "runs");
+}
+
+/// Refuses what experiment.json says, if it is not of this experiment.
+void require_own_description(const Experiment& experiment, const std::filesystem::path& results) {
+    const std::filesystem::path file = description_file(results);
+    const Json json = Json::parse(read_text_file(file, largest_json), nullptr, false);
+    const auto text = [&](const char* name) {
+        const auto found = json.is_object() ? json.find(name) : json.end();
+        return found != json.end() && found->is_string() ? std::optional(found->get<std::string>()) : std::nullopt;
+    };
+    const auto name = text("experiment");
+    if (!name || json.value("schema", Json()) != schema)
+        throw InputError(file.string(), fmt::format("does not say whose results these are; {}, or remove this file if "
+                                                    "they are of the experiment {}",
+                                                    advice, quoted(experiment.name)));
+    const bool is_smoke = json.value("smoke", Json(false)) == true;
+    if (*name != experiment.name)
+        throw InputError(file.string(), fmt::format("these are results of the experiment {}, not of {}; {}",
+                                                    quoted(*name), quoted(experiment.name), advice));
+    if (is_smoke != experiment.is_smoke)
+        throw InputError(file.string(),
+                         fmt::format("these are results {} --smoke; {}", is_smoke ? "of" : "without", advice));
+    // The file may have been moved, or be mounted elsewhere; but one that shares nothing with these but its name is
+    // another.
+    const std::string here = whole_path(experiment.file);
+    const auto there = text("file");
+    if (there && *there != here && holds_runs(results) && !has_any_run_of(experiment, results))
+        throw InputError(file.string(), fmt::format("these are results of {}, which has no run in common with {}; {}",
+                                                    *there, here, advice));
+}
+
+}  // namespace
+
+void require_own_results(const Experiment& experiment, const std::filesystem::path& results) {
+    if (std::filesystem::exists(description_file(results))) return require_own_description(experiment, results);
+    require_own_json(experiment, results / "merged.json");
+    require_own_table(experiment, results / "iterations.csv");
+    require_own_table(experiment, results / "probes.csv");
+    require_own_folders(experiment, results / "runs", "run.json");
+    require_own_folders(experiment, results / "ensembles", "ensemble.json");
+}
+
+void claim_results(const Experiment& experiment, const std::filesystem::path& results) {
+    require_own_results(experiment, results);
+    make_folder(results);
+    const Json json{{"schema", schema},
+                    {"experiment", experiment.name},
+                    {"smoke", experiment.is_smoke},
+                    {"title", experiment.title},
+                    {"file", whole_path(experiment.file)},
+                    {"program", {{"name", "photonlab"}, {"version", program_version().version}}}};
+    const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    const std::filesystem::path file = description_file(results);
+    if (!std::filesystem::exists(file) || read_text_file(file, largest_json) != text) write_text_file(file, text);
+}
+
+}  // namespace photonlab

@@ -1,0 +1,23 @@
+// Whose a results folder is. RESULTS/experiment.json names its experiment, and is the first file that goes into it:
+//
+//     {"schema": 1, "experiment": "alpha-study", "smoke": false, "title": ..., "file": ..., "program": ...}
+//
+// A folder without it, as earlier programs left them, is an experiment's when all that is called as results are says
+// so. What is there under such a name and is nobody's results is refused: it is never replaced.
+
+#pragma once
+
+#include <filesystem>
+
+#include "experiment/experiment_file.h"
+
+namespace photonlab {
+
+/// Throws InputError when the folder is another experiment's, or this one's in small or at full size when it is not run
+/// so, or holds files of somebody else under the names of results. Writes nothing.
+void require_own_results(const Experiment& experiment, const std::filesystem::path& results);
+
+/// The same, and writes experiment.json where it is not as it should be. For whoever holds the folder's lock.
+void claim_results(const Experiment& experiment, const std::filesystem::path& results);
+
+}  // namespace photonlab
