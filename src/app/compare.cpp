@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
 #include "app/commands.h"
 #include "core/error.h"
 #include "core/messages.h"
+#include "core/nearest.h"
 #include "experiment/reference.h"
 #include "image/exr.h"
 
@@ -27,8 +29,8 @@ void print(std::string_view name, const std::optional<double>& value) {
 
 void compare_files(const CompareOptions& options) {
     Metadata metadata;
-    const Image image = read_exr(options.image, &metadata);
-    const Reference reference = load_reference(options.reference, std::nullopt);
+    const Image image = read_exr(options.image, &metadata, options.component);
+    const Reference reference = load_reference(options.reference, std::nullopt, options.component);
     if (image.width != reference.half_a.width || image.height != reference.half_a.height)
         throw InputError(options.image.string(),
                          fmt::format("the image is {}x{}, the reference {}x{}", image.width, image.height,
@@ -37,17 +39,24 @@ void compare_files(const CompareOptions& options) {
     const bool carried = metadata["photonlab.direct"] == name_of(DirectMode::Photons);
     const auto errors = judge(image, reference, options.component, carried);
     if (!errors)
-        throw InputError(
-            fmt::format("--component {}: the image or the reference does not have it to compare", options.component));
+        throw InputError(options.image.string(),
+                         fmt::format("--component {}: this image or the reference {} does not have it to compare",
+                                     options.component, options.reference.string()));
     print("mse", errors->mse);
     print("mse_unbiased", errors->mse_unbiased);
-    print("rmse", errors->rmse);
+    print_output("{:<16} {}; as figures show it: {}\n", "rmse", errors->rmse, describe_rmse(*errors));
     print("relmse", errors->relmse);
     print("smape", errors->smape);
     print("bias", errors->bias);
     print("max_error", errors->max_error);
     print("reference_floor", errors->reference_floor);
     print_output("{:<16} {}\n", "nonfinite", errors->nonfinite);
+}
+
+/// A check of CLI11: empty where the name is that of a component.
+std::string require_component(const std::string& name) {
+    if (std::find(components.begin(), components.end(), name) != components.end()) return "";
+    return unknown_name("component", name, {components.begin(), components.end()});
 }
 
 }  // namespace
@@ -58,7 +67,7 @@ void add_compare_command(CLI::App& app) {
     command->add_option("IMAGE", options->image, "image to judge (OpenEXR)")->required();
     command->add_option("REFERENCE", options->reference, "folder of a reference, or an EXR")->required();
     command->add_option("--component", options->component, "total, or a layer: emission, direct, gathered [total]")
-        ->check(CLI::IsMember(components));
+        ->check(require_component);
     command->footer("Example:\n  photonlab compare box.exr reference/cornell-box");
     command->callback([options] { compare_files(*options); });
 }

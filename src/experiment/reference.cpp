@@ -70,11 +70,12 @@ std::string check_reference(const std::filesystem::path& path, const ReferenceSu
     return key_with_samples(json);
 }
 
-Reference load_reference(const std::filesystem::path& path, const std::optional<ReferenceSubject>& subject) {
+Reference load_reference(const std::filesystem::path& path, const std::optional<ReferenceSubject>& subject,
+                         const std::string& component) {
     Reference reference;
     reference.path = path;
     if (!std::filesystem::is_directory(path)) {
-        reference.half_a = read_exr(path);
+        reference.half_a = read_exr(path, nullptr, component);
         if (subject) require_size(path, reference.half_a, *subject);
         reference.key = hash_file(path);
         return reference;

@@ -54,8 +54,10 @@ inline const std::vector<std::string> components{"total", "emission", "direct", 
 /// InputError says what differs.
 std::string check_reference(const std::filesystem::path& path, const ReferenceSubject& subject);
 
-/// Reads a folder or an EXR; with a subject, refuses what is not a reference of it.
-Reference load_reference(const std::filesystem::path& path, const std::optional<ReferenceSubject>& subject);
+/// Reads a folder or an EXR; with a subject, refuses what is not a reference of it. An EXR has to hold what `component`
+/// needs (image/exr.h).
+Reference load_reference(const std::filesystem::path& path, const std::optional<ReferenceSubject>& subject,
+                         const std::string& component = "total");
 
 /// What whoever judges by a reference should be told once: that it is disputed. Empty where it is not.
 std::optional<std::string> warning_about(const Reference& reference);

@@ -76,29 +76,38 @@ std::string channel_names(const Imf::ChannelList& channels) {
     return names;
 }
 
-// The layers that the header promises, or "total" for R, G, B alone.
-std::vector<std::string> layer_names(const Imf::Header& header) {
-    const auto* list = header.findTypedAttribute<Imf::StringAttribute>(layers_attribute);
-    if (!list) return {total_layer};
+// The layers that the header promises; none in another renderer's file.
+std::vector<std::string> promised_layers(const std::string& place, const Imf::Header& header) {
     std::vector<std::string> names;
+    const auto* list = header.findTypedAttribute<Imf::StringAttribute>(layers_attribute);
+    if (!list) return names;
     std::size_t begin = 0;
-    while (true) {
+    do {
         const std::size_t comma = list->value().find(',', begin);
         names.push_back(list->value().substr(begin, comma - begin));
-        if (comma == std::string::npos) return names;
         begin = comma + 1;
-    }
+    } while (begin != 0);  // behind the last there is no comma, and npos + 1 is 0
+    const std::set<std::string> different(names.begin(), names.end());
+    if (different.size() != names.size()) throw InputError(place, "names a layer twice");
+    return names;
 }
 
-void require_channels(const std::string& place, const Imf::ChannelList& channels, const std::string& prefix) {
+/// True if the three channels are there, with one value a pixel.
+bool has_channels(const Imf::ChannelList& channels, const std::string& prefix) {
     for (const char* suffix : {"R", "G", "B"}) {
         const Imf::Channel* channel = channels.findChannel(prefix + suffix);
-        if (!channel)
-            throw InputError(place, "has no channel " + prefix + suffix + "; it has: " + channel_names(channels) +
-                                        (channels.findChannel("Y") ? " (luminance is not read as grey)" : ""));
-        if (channel->xSampling != 1 || channel->ySampling != 1)
-            throw InputError(place, "channel " + prefix + suffix + " is subsampled; expected one value a pixel");
+        if (!channel || channel->xSampling != 1 || channel->ySampling != 1) return false;
     }
+    return true;
+}
+
+/// Says what is missing for a picture, which is something.
+[[noreturn]] void refuse_picture(const std::string& place, const Imf::ChannelList& channels) {
+    for (const char* name : {"R", "G", "B"})
+        if (!channels.findChannel(name))
+            throw InputError(place, std::string("has no channel ") + name + "; it has: " + channel_names(channels) +
+                                        (channels.findChannel("Y") ? " (luminance is not read as grey)" : ""));
+    throw InputError(place, "its channels R, G, B are subsampled; expected one value a pixel");
 }
 
 /// Lines that a compression takes together.
@@ -140,13 +149,66 @@ Metadata string_attributes(const Imf::Header& header) {
     return metadata;
 }
 
-Image read_pixels(const std::filesystem::path& file, Metadata* metadata) {
+ColorD sum_of_layers(const Image& image, std::size_t pixel) {
+    ColorD sum(0.0);
+    for (const Layer& layer : image.layers) sum += ColorD(layer.pixels[pixel]);
+    return sum;
+}
+
+/// What of a file is read.
+struct Contents {
+    std::vector<std::string> layers;
+    bool has_picture = false;  ///< R, G, B
+};
+
+/// Everything of ours that is there. Throws InputError when that does not tell the picture, and it is asked for, or
+/// when there is nothing.
+Contents find_contents(const std::string& place, const Imf::Header& header, const std::string& component) {
+    const Imf::ChannelList& channels = header.channels();
+    const std::vector<std::string> promised = promised_layers(place, header);
+    Contents contents;
+    contents.has_picture = has_channels(channels, "");
+    for (const std::string& name : promised)
+        if (has_channels(channels, name + ".")) contents.layers.push_back(name);
+    const bool is_whole = !promised.empty() && contents.layers.size() == promised.size();
+    // Only who asks for a layer by name takes another program's channels for it.
+    if (promised.empty() && component != total_layer && has_channels(channels, component + "."))
+        contents.layers.push_back(component);
+    if (!contents.has_picture && !is_whole && (component == total_layer || contents.layers.empty()))
+        refuse_picture(place, channels);
+    return contents;
+}
+
+/// True if the picture is what write_exr() makes of these layers.
+bool is_rounded_sum(const std::vector<Color>& picture, const Image& image) {
+    for (std::size_t i = 0; i < picture.size(); ++i) {
+        const Color sum(sum_of_layers(image, i));
+        for (int channel = 0; channel < 3; ++channel)
+            if (sum[channel] != picture[i][channel] && !(std::isnan(sum[channel]) && std::isnan(picture[i][channel])))
+                return false;
+    }
+    return true;
+}
+
+/// Makes the layers those of the picture: where it is not their sum, because another program took some away or changed
+/// either, the difference becomes a layer of its own.
+void complete(Image& image, std::vector<Color>&& picture) {
+    if (image.layers.empty()) {
+        image.layers.push_back({total_layer, std::move(picture)});
+    } else if (!is_rounded_sum(picture, image)) {
+        for (std::size_t i = 0; i < picture.size(); ++i)
+            picture[i] = Color(ColorD(picture[i]) - sum_of_layers(image, i));
+        image.layers.push_back({"rest", std::move(picture)});
+    }
+}
+
+Image read_pixels(const std::filesystem::path& file, Metadata* metadata, const std::string& component) {
     const std::string place = file.string();
     // This class reads the header and leaves the memory for pixels to InputPart. Its table of where blocks begin has an
     // entry a line, though.
     Imf::Header::setMaxImageSize(largest_side, largest_side);
     Imf::MultiPartInputFile input(place.c_str(), Imf::globalThreadCount(), false);
-    if (Imf::isMultiPart(input.version())) throw InputError(place, "has several parts; expected a single image");
+    if (input.parts() != 1) throw InputError(place, "has several parts; expected a single image");
     if (Imf::isNonImage(input.version())) throw InputError(place, "holds deep data; expected a flat image");
 
     const Imf::Header& header = input.header(0);
@@ -156,14 +218,9 @@ Image read_pixels(const std::filesystem::path& file, Metadata* metadata) {
     const std::string size = std::to_string(width) + " x " + std::to_string(height);
     if (width < 1 || height < 1) throw InputError(place, "has an empty data window (" + size + ")");
 
-    const std::vector<std::string> names = layer_names(header);
-    const bool layered = header.findTypedAttribute<Imf::StringAttribute>(layers_attribute) != nullptr;
-    const std::set<std::string> different(names.begin(), names.end());
-    if (different.size() != names.size()) throw InputError(place, "names a layer twice");
-    for (const std::string& name : names) require_channels(place, header.channels(), layered ? name + "." : "");
-
+    const Contents contents = find_contents(place, header, component);
     const auto file_bytes = static_cast<std::int64_t>(std::filesystem::file_size(file));
-    const auto layers = static_cast<std::int64_t>(names.size());
+    const auto layers = static_cast<std::int64_t>(contents.layers.size() + 1);
     if (width > largest_pixel_count / height || width * height > largest_pixel_count / layers ||
         width * height * layers / largest_compression_ratio > file_bytes)
         throw InputError(place, "claims " + size + " pixels, more than is read here or than its " +
@@ -175,16 +232,18 @@ Image read_pixels(const std::filesystem::path& file, Metadata* metadata) {
     Image image;
     image.width = static_cast<int>(width);
     image.height = static_cast<int>(height);
+    const auto pixels = static_cast<std::size_t>(width * height);
+    for (const std::string& name : contents.layers) image.layers.push_back({name, std::vector<Color>(pixels)});
+    std::vector<Color> picture(contents.has_picture ? pixels : 0);
     Imf::FrameBuffer frame;
-    for (const std::string& name : names)
-        image.layers.push_back({name, std::vector<Color>(static_cast<std::size_t>(width * height))});
     for (Layer& layer : image.layers)
-        insert_slices(frame, layered ? layer.name + "." : "", layer.pixels.data(), image.width, window.min.x,
-                      window.min.y);
+        insert_slices(frame, layer.name + ".", layer.pixels.data(), image.width, window.min.x, window.min.y);
+    if (contents.has_picture) insert_slices(frame, "", picture.data(), image.width, window.min.x, window.min.y);
     Imf::InputPart part(input, 0);
     part.setFrameBuffer(frame);
     part.readPixels(window.min.y, window.max.y);
 
+    if (contents.has_picture) complete(image, std::move(picture));
     if (metadata) *metadata = string_attributes(header);
     return image;
 }
@@ -192,11 +251,7 @@ Image read_pixels(const std::filesystem::path& file, Metadata* metadata) {
 // total(), pixel by pixel: in double it would be the peak of memory.
 std::vector<Color> rounded_total(const Image& image) {
     std::vector<Color> sum(image.layers[0].pixels.size());
-    for (std::size_t i = 0; i < sum.size(); ++i) {
-        ColorD pixel(0.0);
-        for (const Layer& layer : image.layers) pixel += ColorD(layer.pixels[i]);
-        sum[i] = Color(pixel);
-    }
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = Color(sum_of_layers(image, i));
     return sum;
 }
 
@@ -320,8 +375,8 @@ auto read_checked(const std::filesystem::path& file, const Read& read) {
 
 }  // namespace
 
-Image read_exr(const std::filesystem::path& file, Metadata* metadata) {
-    return read_checked(file, [&] { return read_pixels(file, metadata); });
+Image read_exr(const std::filesystem::path& file, Metadata* metadata, const std::string& component) {
+    return read_checked(file, [&] { return read_pixels(file, metadata, component); });
 }
 
 Metadata read_exr_metadata(const std::filesystem::path& file) {

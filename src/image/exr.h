@@ -5,6 +5,9 @@
 // attribute `photonlab.layers` keeps their order, which the alphabetical channel list of an EXR loses. That
 // attribute is also what tells our layers from another renderer's auxiliary channels (albedo.R, ...), which do not
 // sum to the picture: without it, R, G, B alone are read.
+//
+// The picture is R, G, B. Where another program has taken layers away, or has changed them or R, G, B, the difference
+// is read as one more layer, "rest", so that the sum of the layers is always the picture.
 
 #pragma once
 
@@ -41,12 +44,16 @@ Metadata read_sealed_metadata(const std::filesystem::path& file);
 /// Throws InputError when a byte of a sealed file is not what was written.
 void require_seal(const std::filesystem::path& file);
 
-/// Reads an image. Layers are those named by `photonlab.layers`, in that order; in a file without it (another
-/// renderer's), R, G, B become one layer called "total". Channels may be float, half or uint, the data window
-/// anywhere; alpha and other channels are left out. `metadata` gets every string attribute.
+/// Reads an image. Layers are those named by `photonlab.layers` as far as they are there, in that order; in a file
+/// without it (another renderer's), R, G, B become one layer called "total". Channels may be float, half or uint, the
+/// data window anywhere; alpha and other channels are left out. `metadata` gets every string attribute.
+///
+/// `component` is what the image is read for: "total", or one layer. Only for the whole must R, G, B be there, or else
+/// every layer; a layer that is asked for by name is read without `photonlab.layers`, too.
+///
 /// Throws InputError: not an EXR, truncated, no R, G, B (luminance alone is refused, not guessed to be grey),
 /// several parts, deep, subsampled, a size that the file cannot hold.
-Image read_exr(const std::filesystem::path& file, Metadata* metadata = nullptr);
+Image read_exr(const std::filesystem::path& file, Metadata* metadata = nullptr, const std::string& component = "total");
 
 /// The string attributes alone. Throws InputError when it is not an EXR.
 Metadata read_exr_metadata(const std::filesystem::path& file);

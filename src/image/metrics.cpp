@@ -1,5 +1,7 @@
 #include "image/metrics.h"
 
+#include <fmt/format.h>
+
 #include <cassert>
 #include <string>
 
@@ -85,6 +87,13 @@ ErrorMetrics compare(const std::vector<ColorD>& image, const ReferencePixels& re
         metrics.reference_floor = floor.value() / count;
     }
     return metrics;
+}
+
+std::string describe_rmse(const ErrorMetrics& metrics) {
+    if (!metrics.mse_unbiased)
+        return fmt::format("{:.4g} with the reference's noise, which is not known", metrics.rmse);
+    if (!(*metrics.mse_unbiased > 0.0)) return "below what the reference can tell";
+    return fmt::format("{:.4g} without the reference's noise", std::sqrt(*metrics.mse_unbiased));
 }
 
 }  // namespace photonlab

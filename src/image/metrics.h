@@ -17,6 +17,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/math.h"
@@ -49,5 +50,10 @@ struct ErrorMetrics {
 /// Sizes must agree (asserted; files are checked where they are read). Throws InputError when the reference holds a
 /// value that is not finite.
 ErrorMetrics compare(const std::vector<ColorD>& image, const ReferencePixels& reference);
+
+/// The root mean square error as figures show it: "0.0121 without the reference's noise", the root of `mse_unbiased`;
+/// "below what the reference can tell" where that is not above 0; and of a reference without halves the root of `mse`,
+/// said to hold its noise.
+std::string describe_rmse(const ErrorMetrics& metrics);
 
 }  // namespace photonlab

@@ -7,6 +7,7 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
 #include <gtest/gtest.h>
 
@@ -73,6 +74,7 @@ struct ForeignFile {
     Imf::Compression compression = Imf::PIZ_COMPRESSION;
     bool tiled = false;
     int sampling = 1;
+    std::string layers = "";  ///< of photonlab.layers, if there is any
 
     static float value(int x, int y, int channel) { return static_cast<float>(x + 10 * y + 100 * channel); }
 
@@ -81,6 +83,7 @@ struct ForeignFile {
         const int height = data_window.max.y - data_window.min.y + 1;
         Imf::Header header(Imath::Box2i({0, 0}, {9, 9}), data_window);
         header.compression() = compression;
+        if (!layers.empty()) header.insert("photonlab.layers", Imf::StringAttribute(layers));
         if (tiled) header.setTileDescription(Imf::TileDescription(2, 2, Imf::ONE_LEVEL));
 
         const std::size_t bytes = type == Imf::HALF ? 2 : 4;
@@ -304,6 +307,62 @@ TEST(Exr, LeavesOutAlphaAndAuxiliaryChannelsOfOtherPrograms) {
     const ScratchFolder folder;
     ForeignFile{.names = {"R", "G", "B", "A", "Y", "albedo.R", "albedo.G", "albedo.B"}}.write(folder / "foreign.exr");
     expect_foreign_values(read_exr(folder / "foreign.exr"));
+}
+
+// What another program leaves of our files: its list of layers, and not all of the layers.
+TEST(Exr, ThePictureIsRgbWhateverIsLeftOfItsLayers) {
+    const ScratchFolder folder;
+    for (const bool tiled : {false, true}) {
+        ForeignFile file{.tiled = tiled, .layers = "emission,direct,gathered"};
+        file.write(folder / "rgb.exr");
+        expect_foreign_values(read_exr(folder / "rgb.exr"));
+
+        file.names = {"R", "G", "B", "A", "direct.R", "direct.G", "direct.B", "gathered.R", "gathered.G"};
+        file.write(folder / "some.exr");
+        for (const std::string component : {"total", "direct", "gathered"}) {
+            const Image image = read_exr(folder / "some.exr", nullptr, component);
+            ASSERT_EQ(image.layers.size(), 2u);
+            EXPECT_EQ(image.layers[0].name, "direct");
+            EXPECT_EQ(image.layers[1].name, "rest");
+            EXPECT_EQ(image.layers[0].pixels[5], Color(411, 511, 611)) << "x 1, y 1";
+            EXPECT_EQ(total(image)[5], ColorD(11, 111, 211));
+        }
+    }
+}
+
+TEST(Exr, LayersAreReadWithoutThePictureWhereItIsNotAskedFor) {
+    const ScratchFolder folder;
+    ForeignFile{.names = {"direct.R", "direct.G", "direct.B", "R"}, .layers = "emission,direct"}.write(folder /
+                                                                                                       "a.exr");
+    EXPECT_MESSAGE(read_exr(folder / "a.exr"), "has no channel G; it has: R, direct.B, direct.G, direct.R");
+    const Image image = read_exr(folder / "a.exr", nullptr, "direct");
+    ASSERT_EQ(image.layers.size(), 1u);
+    EXPECT_EQ(image.layers[0].name, "direct");
+    EXPECT_EQ(image.layers[0].pixels[5], Color(11, 111, 211));
+
+    // All layers are the picture.
+    ForeignFile{.names = {"a.R", "a.G", "a.B", "b.R", "b.G", "b.B"}, .layers = "b,a"}.write(folder / "b.exr");
+    EXPECT_EQ(total(read_exr(folder / "b.exr"))[5], ColorD(11 + 311, 111 + 411, 211 + 511));
+
+    // Of another renderer's file only what is asked for by name.
+    ForeignFile{.names = {"R", "G", "B", "direct.R", "direct.G", "direct.B"}}.write(folder / "c.exr");
+    expect_foreign_values(read_exr(folder / "c.exr"));
+    expect_foreign_values(read_exr(folder / "c.exr", nullptr, "gathered"));
+    const Image asked = read_exr(folder / "c.exr", nullptr, "direct");
+    EXPECT_EQ((*asked.find("direct"))[5], Color(311, 411, 511));
+    EXPECT_EQ(total(asked)[5], ColorD(11, 111, 211));
+}
+
+TEST(Exr, APictureThatWasChangedAloneIsThePicture) {
+    const ScratchFolder folder;
+    write_exr(folder / "a.exr", random_image(5, 4));
+    EXPECT_EQ(read_exr(folder / "a.exr").layers.size(), 3u) << "nothing was changed";
+    ForeignFile{.names = {"R", "G", "B", "emission.R", "emission.G", "emission.B"}, .layers = "emission"}.write(
+        folder / "b.exr");
+    const Image image = read_exr(folder / "b.exr");
+    ASSERT_EQ(image.layers.size(), 2u);
+    EXPECT_EQ(image.layers[0].pixels[5], Color(311, 411, 511));
+    EXPECT_EQ(total(image)[5], ColorD(11, 111, 211));
 }
 
 TEST(Exr, RefusesLuminanceAlone) {
