@@ -37,8 +37,14 @@ std::string require_seconds(const std::string& text) {
     return is_sound ? "" : fmt::format("expected a number of seconds, at least 0, got \"{}\"", text);
 }
 
-std::string require_text(const std::string& text) {
-    return text.empty() ? "expected a value" : "";
+std::string named_by_option(const std::string& message) {
+    const auto with = [&](std::string_view name, std::string_view option) {
+        return message.starts_with(fmt::format("{}: ", name)) ? std::string(option) + message.substr(name.size()) : "";
+    };
+    if (const std::string named = with("samples_per_pixel", "--samples-per-pixel"); !named.empty()) return named;
+    for (const SettingField& field : setting_fields())
+        if (const std::string named = with(field.name, field.option); !named.empty()) return named;
+    return message;
 }
 
 void MethodOptions::add_to(CLI::App& command) {
@@ -50,9 +56,7 @@ void MethodOptions::add_to(CLI::App& command) {
         std::string meaning(field.meaning);
         if (field.name == "integrator") meaning += ": " + integrators;
         if (field.name != "max_depth") meaning += fmt::format(" [{}]", plain_text(field.write(defaults)));
-        command.add_option(std::string(field.option), texts_[std::string(field.name)], meaning)
-            ->check(require_text)
-            ->group("Method");
+        command.add_option(std::string(field.option), texts_[std::string(field.name)], meaning)->group("Method");
     }
 }
 
@@ -61,9 +65,14 @@ ChosenSettings MethodOptions::settings() const {
     for (const SettingField& field : setting_fields()) {
         const auto text = texts_.find(field.name);
         if (text == texts_.end() || text->second.empty()) continue;
-        choose(chosen, field, parse_setting_value(text->second));
-        require_valid(chosen.values);
-        require_used(chosen, field);
+        try {
+            choose(chosen, field, parse_setting_value(text->second));
+            require_valid(chosen.values);
+            require_used(chosen, field);
+        } catch (const InputError& error) {
+            const std::string named = named_by_option(error.what());
+            throw named.starts_with('-') ? InputError(named) : InputError(std::string(field.option), named);
+        }
     }
     return chosen;
 }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "core/error.h"
 #include "experiment/settings_io.h"
 #include "scene/scene.h"
 
@@ -17,10 +18,22 @@ namespace photonlab {
 Resolution parse_resolution(const std::string& text);
 
 /// Checks of CLI11, which by itself takes numbers that are too large for the largest, and NaN for any: a whole number
-/// of 64 bits; a number of seconds, finite and at least 0; a text that is not empty. Empty where it is sound.
+/// of 64 bits; a number of seconds, finite and at least 0. Empty where it is sound.
 std::string require_whole_number(const std::string& text);
 std::string require_seconds(const std::string& text);
-std::string require_text(const std::string& text);
+
+/// A message on a setting, said of its option: "alpha: expected ..." becomes "--alpha: expected ...".
+std::string named_by_option(const std::string& message);
+
+/// Runs a check of settings, whose InputErrors are then so said.
+template <typename Check>
+void check_options(const Check& check) {
+    try {
+        check();
+    } catch (const InputError& error) {
+        throw InputError(named_by_option(error.what()));
+    }
+}
 
 /// Options of the settings of a method, one for each field, in a group of their own.
 class MethodOptions {

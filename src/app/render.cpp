@@ -16,6 +16,7 @@
 #include "core/files.h"
 #include "core/hash.h"
 #include "core/messages.h"
+#include "core/text.h"
 #include "experiment/checkpoint.h"
 #include "experiment/experiment_file.h"
 #include "experiment/memory.h"
@@ -27,6 +28,7 @@
 #include "experiment/version.h"
 #include "image/exr.h"
 #include "image/png.h"
+#include "integrators/registry.h"
 #include "scene/loader.h"
 #include "transport/plain_images.h"
 
@@ -94,7 +96,7 @@ void print_summary(const RunState& state, const RunSettings& settings, const Sce
                      *state.initial_radius, *state.report.radius_mean);
     if (state.paths_cut > 0) print_output("cut         {} photon paths ended by the cap on edges\n", state.paths_cut);
     if (errors) {
-        print_output("rmse        {:.6g}\n", errors->rmse);
+        print_output("rmse        {}\n", describe_rmse(*errors));
         if (errors->mse_unbiased)
             print_output("mse         {:.6g}; without the reference's noise {:.6g}\n", errors->mse,
                          *errors->mse_unbiased);
@@ -151,7 +153,7 @@ void require_different_files(const RenderOptions& options, const std::vector<std
 void render(const RenderOptions& options) {
     require_consistent(options);
     const ChosenSettings chosen = options.method.settings();
-    require_perfect_square(options.samples_per_pixel);
+    check_options([&] { require_perfect_square(options.samples_per_pixel); });
     std::vector<std::uint64_t> snapshots = options.snapshots;
     std::sort(snapshots.begin(), snapshots.end());
     snapshots.erase(std::unique(snapshots.begin(), snapshots.end()), snapshots.end());
@@ -162,6 +164,7 @@ void render(const RenderOptions& options) {
 
     const Scene scene = build_scene(load_scene_file(options.scene), resolution);
     RunSettings settings{resolve(chosen, scene.max_depth), options.seed, options.passes, options.threads, {}};
+    check_options([&] { require_resolvable(settings.method, scene); });
     std::optional<Reference> reference;
     if (!options.reference.empty())
         reference =
@@ -173,6 +176,7 @@ void render(const RenderOptions& options) {
     require_writable(options.output);
     for (const std::string& file : {options.csv, options.png, options.checkpoint})
         if (!file.empty()) require_writable(file);
+    if (!snapshots.empty()) require_writable(snapshot_file(options.output, snapshots.back()));  // the longest name
 
     const auto pixels =
         static_cast<std::uint64_t>(scene.camera.width) * static_cast<std::uint64_t>(scene.camera.height);
@@ -192,7 +196,7 @@ void render(const RenderOptions& options) {
         trace_hit_points(scene, options.samples_per_pixel, options.threads, settings.method.branch_cutoff);
     const RunIdentity identity{"render",
                                "render",
-                               scene.name,
+                               valid_text(scene.name),
                                settings,
                                scene.camera.width,
                                scene.camera.height,

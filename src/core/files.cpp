@@ -8,8 +8,8 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 #include <system_error>
+#include <utility>
 
 #include "core/descriptor.h"
 #include "core/error.h"
@@ -17,29 +17,76 @@
 
 namespace photonlab {
 
-void require_ordinary_file(const std::filesystem::path& file) {
+namespace {
+
+/// A POSIX file descriptor: streams do not say whether the disk took what they were given.
+class Descriptor {
+public:
+    Descriptor(const std::filesystem::path& file, int flags) : number_(::open(file.c_str(), flags | O_CLOEXEC, 0666)) {}
+    ~Descriptor() {
+        if (number_ >= 0) ::close(number_);
+    }
+    Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+    Descriptor& operator=(Descriptor&&) = delete;
+
+    bool is_open() const { return number_ >= 0; }
+    int number() const { return number_; }
+
+private:
+    int number_;
+};
+
+std::string cannot_be_read() {
+    return std::string("cannot be read: ") + std::strerror(errno);
+}
+
+std::uintmax_t size_of(const Descriptor& descriptor) {
+    struct stat status;
+    return ::fstat(descriptor.number(), &status) == 0 ? static_cast<std::uintmax_t>(status.st_size) : 0;
+}
+
+/// The file, opened to be read; it is ordinary. Nothing is waited for, not even by the files of /proc that look
+/// ordinary and end when the kernel has something to say.
+Descriptor open_ordinary_file(const std::filesystem::path& file) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(file, error);
     if (std::filesystem::is_directory(status)) throw InputError(file.string(), "expected a file, this is a folder");
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
         throw InputError(file.string(), "expected a file, this is a pipe or a device");
     if (error) throw InputError(file.string(), "cannot be read: " + error.message());
-    if (!std::ifstream(file, std::ios::binary))
-        throw InputError(file.string(), std::string("cannot be read: ") + std::strerror(errno));
+    Descriptor descriptor(file, O_RDONLY | O_NONBLOCK | O_NOCTTY);
+    if (!descriptor.is_open()) throw InputError(file.string(), cannot_be_read());
+    char byte = 0;
+    if (size_of(descriptor) == 0 && ::read(descriptor.number(), &byte, 1) != 0)
+        throw InputError(file.string(), "expected a file that has a size, this is one of the kernel's");
+    return descriptor;
+}
+
+}  // namespace
+
+void require_ordinary_file(const std::filesystem::path& file) {
+    open_ordinary_file(file);
 }
 
 std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest) {
-    require_ordinary_file(file);
+    const Descriptor descriptor = open_ordinary_file(file);
+    const std::uintmax_t size = size_of(descriptor);
+    if (size > largest)
+        throw InputError(file.string(), fmt::format("expected at most {} bytes, got {}", largest, size));
+    std::string text(size, '\0');
+    for (std::size_t done = 0; done < text.size();) {
+        const ssize_t count = ::read(descriptor.number(), text.data() + done, text.size() - done);
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) throw InputError(file.string(), cannot_be_read());
+        if (count == 0) text.resize(done);  // somebody made it shorter meanwhile
+        done += static_cast<std::size_t>(count);
+    }
+    return text;
+}
+
+std::string working_directory() {
     std::error_code error;
-    const std::uintmax_t size = std::filesystem::file_size(file, error);
-    if (!error && size > largest)
-        throw InputError(file.string(),
-                         "expected at most " + std::to_string(largest) + " bytes, got " + std::to_string(size));
-    std::ifstream stream(file, std::ios::binary);
-    std::ostringstream text;
-    text << stream.rdbuf();
-    if (stream.bad() || !stream.is_open()) throw InputError(file.string(), "cannot be read to its end");
-    return std::move(text).str();
+    return std::filesystem::current_path(error).string();
 }
 
 void write_text_file(const std::filesystem::path& file, std::string_view text) {
@@ -125,9 +172,10 @@ void require_space(const std::filesystem::path& folder, std::uint64_t bytes, con
     const std::filesystem::space_info space = std::filesystem::space(folder.empty() ? "." : folder, error);
     if (error || bytes <= space.available) return;
     constexpr double mebibyte = 1024.0 * 1024.0;
-    throw InputError(folder.string(), fmt::format("{} can take {:.1f} MiB, and {:.1f} MiB are free there", what,
-                                                  static_cast<double>(bytes) / mebibyte,
-                                                  static_cast<double>(space.available) / mebibyte));
+    throw InputError(
+        folder.empty() ? "." : folder.string(),
+        fmt::format("{} can take {:.1f} MiB, and {:.1f} MiB are free there", what,
+                    static_cast<double>(bytes) / mebibyte, static_cast<double>(space.available) / mebibyte));
 }
 
 }  // namespace photonlab

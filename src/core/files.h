@@ -15,11 +15,14 @@
 namespace photonlab {
 
 /// Throws InputError unless `file` is an ordinary file that can be opened. Asked before anything else opens it: a pipe
-/// would wait for a writer, and a device may have no end.
+/// would wait for a writer, and a device may have no end, as may files that the kernel makes up when they are read.
 void require_ordinary_file(const std::filesystem::path& file);
 
 /// Throws InputError when it is no ordinary file, cannot be read, or has more than `largest` bytes.
 std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest = std::uintmax_t{1} << 31);
+
+/// The folder that the program was started in; empty when it is not there any more.
+std::string working_directory();
 
 /// Replaces the file by `text` at once. Throws InputError when it cannot be written.
 void write_text_file(const std::filesystem::path& file, std::string_view text);

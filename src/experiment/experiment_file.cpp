@@ -11,7 +11,9 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "core/nearest.h"
+#include "core/text.h"
 #include "experiment/toml.h"
+#include "experiment/toml_nesting.h"
 #include "integrators/registry.h"
 
 namespace photonlab {
@@ -22,6 +24,7 @@ constexpr std::int64_t most_passes = 0xffffffff;  // a random stream's pass has 
 constexpr std::int64_t largest_side = 65536;
 constexpr std::int64_t most_threads = 1024;
 constexpr std::size_t most_runs = 100'000;
+constexpr std::size_t longest_file_name = 255;                    // bytes, on the file systems of Linux
 constexpr std::uint64_t most_records = 10'000'000;                // recorded passes of all runs together
 constexpr std::uintmax_t largest_file = std::uintmax_t{1} << 24;  // bytes
 
@@ -55,12 +58,15 @@ class ExperimentReader {
 public:
     ExperimentReader(const std::filesystem::path& file, std::optional<SmokeLimits> smoke) : smoke_(smoke) {
         experiment_.file = file;
-        experiment_.name = file.stem().string() + (smoke ? "-smoke" : "");
+        experiment_.name = valid_text(file.stem().string()) + (smoke ? "-smoke" : "");
         experiment_.is_smoke = smoke.has_value();
     }
 
     Experiment read() {
         const std::string text = read_text_file(experiment_.file, largest_file);
+        if (const auto line = line_nested_too_deeply(text))
+            throw InputError(fmt::format("{}:{}", experiment_.file.string(), *line),
+                             fmt::format("expected at most {} names joined by dots", most_joined_names));
         toml::table root;
         try {
             root = toml::parse(text, experiment_.file.string());
@@ -391,6 +397,12 @@ private:
             run.settings = settings;
             run.plan = method.plan;
             run.seed = seed;
+            if (run.name.size() > longest_file_name)
+                throw InputError(
+                    method.place,
+                    fmt::format("a run is called {}, which has {} letters and can be no file's name: expected "
+                                "at most {}; give the scene and the method short names, or sweep less",
+                                run.name, run.name.size(), longest_file_name));
             if (!names_.insert(run.name).second)
                 throw InputError(method.place,
                                  fmt::format("two runs are called {}: give methods and scenes names of their "

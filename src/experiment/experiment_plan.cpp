@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/hash.h"
+#include "core/nearest.h"
 #include "experiment/progress.h"
 #include "experiment/reference.h"
 #include "experiment/results_folder.h"
@@ -22,15 +23,19 @@ namespace photonlab {
 
 namespace {
 
+/// What is said where no run is called so.
+std::string no_run_called(const std::string& only, const std::vector<ExperimentRun>& runs) {
+    constexpr std::size_t most = 1000;  // of which the nearest is sought
+    std::vector<std::string_view> names;
+    for (std::size_t i = 0; i < std::min(most, runs.size()); ++i) names.push_back(runs[i].name);
+    return "--only: " + unknown_name("run", only, names);
+}
+
 std::vector<const ExperimentRun*> select_runs(const Experiment& experiment, const std::optional<std::string>& only) {
     std::vector<const ExperimentRun*> selected;
-    std::string names;
-    for (const ExperimentRun& run : experiment.runs) {
-        names += "\n  " + run.name;
+    for (const ExperimentRun& run : experiment.runs)
         if (!only || run.name == *only || fnmatch(only->c_str(), run.name.c_str(), 0) == 0) selected.push_back(&run);
-    }
-    if (selected.empty())
-        throw InputError(fmt::format("--only {}: no run is called that; the runs are{}", *only, names));
+    if (selected.empty()) throw InputError(no_run_called(*only, experiment.runs));
     return selected;
 }
 

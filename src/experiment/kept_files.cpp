@@ -14,10 +14,6 @@ namespace {
 constexpr std::string_view before_checksum = ",\n  \"checksum\": \"";
 constexpr std::string_view after_checksum = "\"\n}\n";
 
-std::string text_of(const Json& json) {
-    return json.dump(2, ' ', false, Json::error_handler_t::replace);
-}
-
 std::string other_size(const std::filesystem::path& file, std::uintmax_t bytes, const FileStamp& stamp) {
     return fmt::format("{}: has {} bytes, and had {} when it was written", file.string(), bytes, stamp.bytes);
 }
@@ -65,12 +61,8 @@ std::optional<std::string> fault_of_text(const std::filesystem::path& file, cons
     return other_hash(file, hash_text(text), stamp);
 }
 
-std::string as_json_holds(const std::string& name) {
-    return Json::parse(text_of(name)).get<std::string>();
-}
-
 std::string with_checksum(const Json& json) {
-    std::string text = text_of(json);
+    std::string text = json_text(json);
     text.resize(text.size() - 2);  // "\n}"
     const std::string hash = hash_text(text);
     return text + std::string(before_checksum) + hash + std::string(after_checksum);
@@ -83,9 +75,9 @@ std::optional<Json> checked_json(const std::string& text) {
     if (std::string_view(text).substr(end) !=
         std::string(before_checksum) + hash_text(before) + std::string(after_checksum))
         return std::nullopt;
-    Json json = Json::parse(text, nullptr, false);
-    if (!json.is_object()) return std::nullopt;
-    json.erase("checksum");
+    std::optional<Json> json = parse_sound_json(text);
+    if (!json || !json->is_object()) return std::nullopt;
+    json->erase("checksum");
     return json;
 }
 

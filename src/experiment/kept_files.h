@@ -52,9 +52,6 @@ std::optional<std::string> fault_of(const std::filesystem::path& file, const Fil
 std::optional<std::string> fault_of_text(const std::filesystem::path& file, const std::string& text,
                                          const FileStamp& stamp);
 
-/// A name as it is read back from JSON: what is no UTF-8 in it is replaced.
-std::string as_json_holds(const std::string& name);
-
 /// The text of a JSON object with its checksum. The object must not have a member "checksum".
 std::string with_checksum(const Json& json);
 

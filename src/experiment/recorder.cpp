@@ -6,6 +6,8 @@
 #include <fstream>
 #include <limits>
 
+#include "core/number_in.h"
+#include "core/text.h"
 #include "integrators/registry.h"
 
 namespace photonlab {
@@ -151,16 +153,23 @@ std::string csv_row(const Record& record) {
     for (const Column& column : columns()) {
         if (&column != &columns().front()) line += ',';
         line +=
-            csv_quoted(column.value ? column.value(record)
-                                    : setting_text(record.identity.settings.method, *find_setting_field(column.name)));
+            csv_cell(column.value ? column.value(record)
+                                  : setting_text(record.identity.settings.method, *find_setting_field(column.name)));
     }
     return line;
 }
 
-std::string csv_quoted(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+std::string csv_cell(const std::string& text) {
+    const std::size_t first = text.find_first_not_of('\'');
+    const bool is_formula =
+        first != std::string::npos && std::string_view("=+-@\t\r").find(text[first]) != std::string_view::npos;
+    const bool is_number =
+        number_in<double>(text.starts_with('+') ? std::string_view(text).substr(1) : text).has_value();
+    std::string cell = valid_text(text);
+    if (is_formula && !is_number) cell.insert(0, 1, '\'');
+    if (cell.find_first_of(",\"\r\n") == std::string::npos) return cell;
     std::string quoted = "\"";
-    for (const char c : text) {
+    for (const char c : cell) {
         if (c == '"') quoted += '"';
         quoted += c;
     }

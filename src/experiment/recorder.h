@@ -57,8 +57,11 @@ std::string csv_header();
 /// A row, without its end.
 std::string csv_row(const Record& record);
 
-/// A value as RFC 4180 wants it: in quotes when it holds a comma, a quote or a line end.
-std::string csv_quoted(const std::string& text);
+/// A value as it stands in a table: in quotes when it holds a comma, a quote or a line end, as RFC 4180 wants it. What
+/// a spreadsheet would take for a formula, a text that begins with = + - @, a tab or a carriage return and is no
+/// number, gets an apostrophe in front, as does what begins so behind apostrophes: whoever takes one away again has the
+/// text back. [OWASP, "CSV Injection"]
+std::string csv_cell(const std::string& text);
 
 /// True when nothing but photons carries direct light in this method.
 bool photons_carry_direct(const MethodSettings& settings);

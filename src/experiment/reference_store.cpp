@@ -291,7 +291,7 @@ Json add_reference_samples(const Scene& scene, const ReferenceSettings& settings
         json["checksums"] = {{"half_a", checksum_a}, {"half_b", checksum_b}};
         const ProgramVersion program = program_version();
         json["program"] = {{"version", program.version}, {"commit", program.commit}};
-        write_text_file(folder / "reference.json", json.dump(2) + "\n");
+        write_text_file(folder / "reference.json", json_text(json) + "\n");
     };
 
     const std::uint64_t before = half_a.samples() + half_b.samples();
@@ -339,9 +339,14 @@ Json read_reference_json(const std::filesystem::path& folder) {
     if (!std::filesystem::exists(file))
         throw InputError(folder.string(),
                          "this is no reference: reference.json is missing (photonlab reference makes one)");
+    const std::string text = read_text_file(file, largest_json);
     Json json;
     try {
-        json = Json::parse(read_text_file(file, largest_json));
+        json = parse_json(text);
+    } catch (const InputError& error) {
+        throw InputError(file.string(), std::string("this is no reference: ") + error.what());
+    }
+    try {
         json.at("scene").at("hash").get<std::string>();
         // Json turns any number into an int, whether it fits or not.
         const auto require_whole = [&](const char* name, std::int64_t least, std::int64_t most) {

@@ -43,9 +43,9 @@ std::string probe_rows(const RunIdentity& identity, const std::vector<Probe>& pr
         const auto hit_point = heaviest_hit_point(hit_points, probe);
         const auto state = hit_point ? integrator.gather_state(*hit_point) : std::nullopt;
         if (!state) continue;
-        rows += fmt::format("1,{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_quoted(identity.experiment),
-                            csv_quoted(identity.run), csv_quoted(identity.scene), identity.settings.seed, probe.name,
-                            probe.x, probe.y, pass, state->radius, state->photons,
+        rows += fmt::format("1,{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(identity.experiment),
+                            csv_cell(identity.run), csv_cell(identity.scene), identity.settings.seed,
+                            csv_cell(probe.name), probe.x, probe.y, pass, state->radius, state->photons,
                             state->density ? fmt::format("{}", *state->density) : "", state->radiance.x,
                             state->radiance.y, state->radiance.z);
     }
@@ -142,7 +142,7 @@ std::string finish(const RunGroup& group, OpenRun& run, const RunState& last) {
     discard(run.checkpoint);
 
     std::string line = fmt::format("finished {} in {}", run.prepared->run->name, describe_duration(last.times.total()));
-    if (run.recorder.last_total_errors()) line += fmt::format(", rmse {:.4g}", run.recorder.last_total_errors()->rmse);
+    if (run.recorder.last_total_errors()) line += ", rmse " + describe_rmse(*run.recorder.last_total_errors());
     if (run.recorder.nonfinite_pixels() > 0) line += ", with non-finite pixels (run.json says where)";
     return line;
 }
@@ -168,7 +168,7 @@ Ensemble ensemble_of(const Experiment& experiment, const PreparedRun& prepared, 
                      {"method", prepared.run->method},
                      {"photons_carry_direct", photons_carry_direct(prepared.settings.method)},
                      {"reference", entry.reference ? Json{{"path", entry.reference->string()}} : Json()},
-                     {"working_directory", std::filesystem::current_path().string()},
+                     {"working_directory", working_directory()},
                      {"regions", regions},
                      {"passes", prepared.run->plan.recorded}});
 }

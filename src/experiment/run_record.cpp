@@ -108,7 +108,7 @@ Json run_json(const RunRecord& record, const Recorder& recorder, const RunState&
         {"started", utc(record.started)},
         {"seconds", record.seconds},
         {"runs_together", record.runs_together},
-        {"working_directory", std::filesystem::current_path().string()},
+        {"working_directory", working_directory()},
     };
 }
 

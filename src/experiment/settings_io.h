@@ -5,18 +5,16 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "experiment/json.h"
 #include "integrators/settings.h"
 
 namespace photonlab {
-
-using Json = nlohmann::ordered_json;
 
 /// A value as an experiment file or the command line gives it.
 using SettingValue = std::variant<bool, std::int64_t, double, std::string>;

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "core/number_in.h"
+#include "core/text.h"
 #include "experiment/checkpoint.h"
 #include "experiment/ensemble.h"
 #include "experiment/kept_files.h"
@@ -99,7 +100,7 @@ private:
             return;
         }
         const std::string name = folder.filename().string();
-        if (run->run != as_json_holds(name))
+        if (run->run != valid_text(name))
             return fault(description, fmt::format("is of the run {}, which is not called as its folder", run->run));
         ++found_.files;
         check_files_of(folder, *run);
@@ -129,7 +130,7 @@ private:
         if (is_of_work(folder)) return;
         if (!std::filesystem::is_directory(folder)) return fault(folder, "is no folder of sums over seeds");
         const std::filesystem::path description = folder / "ensemble.json";
-        Sums& sums = sums_[as_json_holds("ensembles/" + folder.filename().string())];
+        Sums& sums = sums_[valid_text("ensembles/" + folder.filename().string())];
         if (!std::filesystem::exists(description)) {
             fault(description, "is missing; `photonlab run` writes it again");
         } else if (const auto json = checked_json(read_text_file(description))) {

@@ -101,13 +101,14 @@ bool has_channels(const Imf::ChannelList& channels, const std::string& prefix) {
     return true;
 }
 
-/// Says what is missing for a picture, which is something.
-[[noreturn]] void refuse_picture(const std::string& place, const Imf::ChannelList& channels) {
-    for (const char* name : {"R", "G", "B"})
+/// Says what is missing of three channels, which something is.
+[[noreturn]] void refuse_channels(const std::string& place, const Imf::ChannelList& channels,
+                                  const std::string& prefix) {
+    for (const std::string name : {prefix + "R", prefix + "G", prefix + "B"})
         if (!channels.findChannel(name))
-            throw InputError(place, std::string("has no channel ") + name + "; it has: " + channel_names(channels) +
+            throw InputError(place, "has no channel " + name + "; it has: " + channel_names(channels) +
                                         (channels.findChannel("Y") ? " (luminance is not read as grey)" : ""));
-    throw InputError(place, "its channels R, G, B are subsampled; expected one value a pixel");
+    throw InputError(place, "its channels " + prefix + "R, G, B are subsampled; expected one value a pixel");
 }
 
 /// Lines that a compression takes together.
@@ -175,7 +176,7 @@ Contents find_contents(const std::string& place, const Imf::Header& header, cons
     if (promised.empty() && component != total_layer && has_channels(channels, component + "."))
         contents.layers.push_back(component);
     if (!contents.has_picture && !is_whole && (component == total_layer || contents.layers.empty()))
-        refuse_picture(place, channels);
+        refuse_channels(place, channels, component == total_layer ? "" : component + ".");
     return contents;
 }
 

@@ -99,10 +99,25 @@ TEST(Records, NumbersReadBackTheSame) {
 }
 
 TEST(Records, TextIsQuotedAsRfc4180Says) {
-    EXPECT_EQ(csv_quoted("plain"), "plain");
-    EXPECT_EQ(csv_quoted("a,b"), "\"a,b\"");
-    EXPECT_EQ(csv_quoted("say \"b\""), "\"say \"\"b\"\"\"");
-    EXPECT_EQ(csv_quoted("two\nlines"), "\"two\nlines\"");
+    EXPECT_EQ(csv_cell("plain"), "plain");
+    EXPECT_EQ(csv_cell("a,b"), "\"a,b\"");
+    EXPECT_EQ(csv_cell("say \"b\""), "\"say \"\"b\"\"\"");
+    EXPECT_EQ(csv_cell("two\nlines"), "\"two\nlines\"");
+}
+
+// A name like =1+1 would be computed by a spreadsheet, and =HYPERLINK(...) would do more.
+TEST(Records, TextThatASpreadsheetTakesForAFormulaIsKeptFromIt) {
+    for (const std::string text : {"=1+1", "+x", "-x_ppm_seed-1", "@sum", "\tx", "=1.xml", "-1+1", "-", "=", "+ 1"})
+        EXPECT_EQ(csv_cell(text), "'" + text);
+    EXPECT_EQ(csv_cell("\rx"), "\"'\rx\"");
+    EXPECT_EQ(csv_cell("=a,b"), "\"'=a,b\"");
+    // One apostrophe more than the text has, so that taking one away gives the text back.
+    EXPECT_EQ(csv_cell("'=1"), "''=1");
+    EXPECT_EQ(csv_cell("''@"), "'''@");
+    for (const std::string text : {"-1", "-0.25", "1e-05", "-1e+300", "+5", "-inf", "inf", "nan", "-nan", "", "'",
+                                   "'quoted'", "a=1", "box-1", "0"})
+        EXPECT_EQ(csv_cell(text), text) << "no formula";
+    EXPECT_EQ(csv_cell("caf\xe9"), "caf\xef\xbf\xbd") << "a table is UTF-8";
 }
 
 TEST(Records, NonFinitePixelsAreCountedAndLocated) {

@@ -42,6 +42,48 @@ TEST(ExperimentMistakes, FilesThatAreNoTextOrTooLargeAreRefused) {
               "names of their own, and values and seeds once");
 }
 
+// toml++ takes tables down by recursion, one for every name of a key.
+TEST(ExperimentMistakes, NamesWithoutEndAreRefusedByTheirLine) {
+    const MistakesFolder folder;
+    folder.write("lamp.xml", "");
+    const auto message = [&](const std::string& bytes) {
+        return refusal(folder.path(), [&] { read_experiment(folder.write("a.toml", bytes)); });
+    };
+    const std::string good = "scenes = [\"lamp.xml\"]\npasses = 1\n[[method]]\nintegrator = \"ppm\"\n";
+    for (const std::string name : {"a", "'a'", "\"a\"", "\"\\\"]\"", "a-1", " a ", "\"\"", "''"})
+        for (const std::size_t count : {17, 250'000}) {
+            std::string joined = name;
+            for (std::size_t i = 1; i < count; ++i) joined += "." + name;
+            for (const std::string text : {"[" + joined + "]", "[[" + joined + "]]", joined + " = 1",
+                                           "a = {" + joined + " = 1}", "a = [{b = 1, " + joined + " = 1}]"})
+                EXPECT_EQ(message(good + text + "\n"), "a.toml:5: expected at most 16 names joined by dots");
+        }
+    std::string inside;
+    for (int i = 0; i < 100'000; ++i) inside += "{a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p = ";
+    EXPECT_EQ(message("a = " + inside).substr(0, 9), "a.toml:1:");
+
+    const std::string dots(300, '.');
+    EXPECT_EQ(message("title = \"a" + dots + "\" # " + dots + "\n" + good), "no error");
+    EXPECT_EQ(message("title = '''\n[a" + dots + "]\n''' #\n" + good), "no error");
+    EXPECT_EQ(message("title = \"\"\"\n\\\"\"\"" + dots + "\n\"\"\" #\n" + good), "no error");
+    std::string many = good + "alpha = [0.5";
+    for (int i = 1; i < 300; ++i) many += ", 0.5" + std::to_string(1000 + i);
+    EXPECT_EQ(message(many + "]\n"), "no error");
+}
+
+TEST(ExperimentMistakes, RunsThatNoFileCanBeCalledAreRefusedBeforeAnyIsMade) {
+    const MistakesFolder folder;
+    folder.write("lamp.xml", "");
+    const auto message = [&](std::size_t letters) {
+        const std::string text = "scenes = [\"lamp.xml\"]\npasses = 1\n[[method]]\nintegrator = \"ppm\"\nname = \"" +
+                                 std::string(letters, 'n') + "\"\n";
+        return refusal(folder.path(), [&] { read_experiment(folder.write("a.toml", text)); });
+    };
+    EXPECT_EQ(message(255 - 5 - 7), "no error") << "lamp_ before it and _seed-1 behind";
+    EXPECT_EQ(message(255 - 5 - 6).substr(0, 40), "a.toml:3: a run is called lamp_nnnnnnnnn");
+    EXPECT_NE(message(2000).find(", which has 2012 letters and can be no file's name"), std::string::npos);
+}
+
 TEST(ExperimentMistakes, WhatIsNoFileIsRefusedNotWaitedFor) {
     const MistakesFolder folder;
     ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
