@@ -330,7 +330,7 @@ Json compare_reference_with_photons(const Scene& scene, const ReferenceSettings&
     if (settings.is_interrupted()) return json;
     set_check(json, reference.half_a.find(gathered_layer) ? check_of(photons, reference.half_a, reference.half_b)
                                                           : not_made("it holds the picture without its layers"));
-    write_text_file(folder / "reference.json", json.dump(2) + "\n");
+    write_text_file(folder / "reference.json", json_text(json) + "\n");
     return json;
 }
 

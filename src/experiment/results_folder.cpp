@@ -25,7 +25,7 @@ std::filesystem::path description_file(const std::filesystem::path& results) {
 }
 
 std::string quoted(const std::string& name) {
-    return Json(name).dump(-1, ' ', false, Json::error_handler_t::replace);
+    return json_text(name);
 }
 
 std::string whole_path(const std::filesystem::path& file) {
@@ -35,7 +35,7 @@ std::string whole_path(const std::filesystem::path& file) {
 /// What a JSON file says of its experiment; empty when it is not there, or says nothing.
 std::optional<std::string> experiment_in(const std::filesystem::path& file) {
     if (!std::filesystem::exists(file)) return std::nullopt;
-    const Json json = Json::parse(read_text_file(file), nullptr, false);
+    const Json json = parse_sound_json(read_text_file(file)).value_or(Json());
     const auto found = json.is_object() ? json.find("experiment") : json.end();
     if (found == json.end() || !found->is_string()) return std::nullopt;
     return found->get<std::string>();
@@ -98,7 +98,7 @@ bool holds_runs(const std::filesystem::path& results) {
 /// Refuses what experiment.json says, if it is not of this experiment.
 void require_own_description(const Experiment& experiment, const std::filesystem::path& results) {
     const std::filesystem::path file = description_file(results);
-    const Json json = Json::parse(read_text_file(file, largest_json), nullptr, false);
+    const Json json = parse_sound_json(read_text_file(file, largest_json)).value_or(Json());
     const auto text = [&](const char* name) {
         const auto found = json.is_object() ? json.find(name) : json.end();
         return found != json.end() && found->is_string() ? std::optional(found->get<std::string>()) : std::nullopt;
@@ -144,7 +144,7 @@ void claim_results(const Experiment& experiment, const std::filesystem::path& re
                     {"title", experiment.title},
                     {"file", whole_path(experiment.file)},
                     {"program", {{"name", "photonlab"}, {"version", program_version().version}}}};
-    const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    const std::string text = json_text(json) + "\n";
     const std::filesystem::path file = description_file(results);
     if (!std::filesystem::exists(file) || read_text_file(file, largest_json) != text) write_text_file(file, text);
 }
