@@ -2,138 +2,119 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
-#include <numeric>
-#include <span>
 #include <string>
+#include <utility>
 
 #include "core/error.h"
-#include "core/morton.h"
+#include "gather/group_search.h"
+#include "gather/photon_order.h"
+#include "gather/query_cluster.h"
 
 namespace photonlab {
 
 namespace {
 
-constexpr int leaf_max_size = 8;
+/// What a search gives up for speed.
+struct Inexactness {
+    double opened_share;          ///< of the reach of a search: within it a group's ball must come to be looked at
+    std::size_t queries_at_once;  ///< that a search may answer
+};
 
-/// A place along a curve in the upper half, the photon's index in the lower.
-using SortKey = std::uint64_t;
-
-std::size_t index_of(SortKey key) {
-    return static_cast<std::size_t>(key & 0xffffffffu);
+/// All that `eps` means. An inexact search of a cluster would take the photons of the queries at its edge, so there
+/// each query is searched alone.
+Inexactness inexactness(double eps) {
+    return {1.0 / std::sqrt(1.0 + eps), eps > 0.0 ? 1 : QueryCluster::capacity};
 }
 
-/// By place, then by index, by which they are sorted already: a stable least-significant-digit radix sort, or for few
-/// keys an ordinary one.
-void sort_keys(std::span<SortKey> keys) {
-    constexpr std::size_t few = 2048;
-    if (keys.size() <= few) return std::sort(keys.begin(), keys.end());
-    constexpr unsigned digit_bits = MortonCurve::bits_per_axis;
-    constexpr std::size_t buckets = std::size_t{1} << digit_bits;
-    std::vector<SortKey> other(keys.size());
-    std::span<SortKey> from = keys;
-    std::span<SortKey> to = other;
-    for (unsigned shift = 32; shift < 32 + 3 * digit_bits; shift += digit_bits) {
-        std::array<std::size_t, buckets> starts{};
-        for (const SortKey key : from) ++starts[key >> shift & (buckets - 1)];
-        std::size_t next = 0;
-        for (std::size_t& start : starts) {
-            const std::size_t count = start;
-            start = next;
-            next += count;
+/// Gathers the photons that count at the queries of one cluster after the other, and hands them on in runs.
+class RunSink {
+public:
+    using TakeRun = std::function<void(std::span<const FoundPhoton>)>;
+
+    RunSink(const std::vector<GatherQuery>& queries, const TakeRun& take) : queries_(queries), take_(take) {}
+
+    void begin(const QueryCluster& cluster) { cluster_ = &cluster; }
+
+    double reach() const { return cluster_->reach(); }
+    bool take(const Vector& position, std::size_t index, const Photon& photon) {
+        std::array<double, QueryCluster::capacity> squared_distance;
+        std::uint64_t inside = cluster_->holding(position, squared_distance);
+        if (inside == 0) return false;
+        const PhotonSide side(photon);
+        for (; inside != 0; inside &= inside - 1) {
+            const auto slot = static_cast<std::size_t>(std::countr_zero(inside));
+            const std::size_t query = cluster_->first() + slot;
+            if (!side.is_accepted_at(queries_[query].normal)) continue;
+            if (count_ == capacity) flush();
+            run_[count_++] = {squared_distance[slot], static_cast<std::uint32_t>(index),
+                              static_cast<std::uint32_t>(query)};
         }
-        for (const SortKey key : from) to[starts[key >> shift & (buckets - 1)]++] = key;
-        std::swap(from, to);
+        return false;
     }
-    std::copy(from.begin(), from.end(), keys.begin());  // three digits: they are in `other`
-}
 
-/// Puts the keys into the order of their photons along a Morton curve, and those that share a place on it along a finer
-/// one of their own: a caustic may be smaller than a cell of the scene.
-void sort_along_curve(const std::vector<Photon>& photons, std::span<SortKey> keys) {
-    Box box;
-    for (const SortKey key : keys) box.include(photons[index_of(key)].position);
-    const MortonCurve curve(box);
-    for (SortKey& key : keys)
-        key = std::uint64_t{curve.place_of(photons[index_of(key)].position)} << 32 | index_of(key);
-    sort_keys(keys);
-    for (std::size_t first = 0; first < keys.size();) {
-        std::size_t end = first + 1;
-        while (end < keys.size() && keys[end] >> 32 == keys[first] >> 32) ++end;
-        const std::size_t count = end - first;
-        // As many as there are: all of them at one point.
-        if (count > PhotonGroups::capacity && count < keys.size())
-            sort_along_curve(photons, keys.subspan(first, count));
-        first = end;
+    void flush() {
+        take_({run_.data(), count_});
+        count_ = 0;
     }
-}
 
-/// Puts the photons into the order of the keys, in place: a second copy of them would be the peak of memory.
-void permute(std::vector<Photon>& photons, std::vector<SortKey>& keys) {
-    const auto source = [&](std::size_t place) { return index_of(keys[place]); };
-    for (std::size_t start = 0; start < photons.size(); ++start) {
-        const Photon first = photons[start];
-        std::size_t place = start;
-        while (source(place) != start) {
-            const std::size_t from = source(place);
-            photons[place] = photons[from];
-            keys[place] = place;
-            place = from;
-        }
-        photons[place] = first;
-        keys[place] = place;
-    }
+private:
+    static constexpr std::size_t capacity = 1024;  // 16 KiB: still in the nearest cache when they are handed on
+
+    const std::vector<GatherQuery>& queries_;
+    const TakeRun& take_;
+    const QueryCluster* cluster_ = nullptr;
+    std::size_t count_ = 0;
+    std::array<FoundPhoton, capacity> run_;
+};
+
+/// Ties in distance go to the lower index, so that the answer does not depend on the order of the search.
+bool is_nearer(const FoundPhoton& a, const FoundPhoton& b) {
+    return a.squared_distance != b.squared_distance ? a.squared_distance < b.squared_distance : a.photon < b.photon;
 }
 
 /// Keeps the k nearest accepted photons: in order for small k, which is faster there, as a heap for large.
 class NearestSink {
 public:
-    /// `neighbours` is the caller's buffer, emptied here. k >= 1.
-    NearestSink(const Vector& position, const Vector& normal, std::size_t k, double max_squared_radius,
-                std::vector<Neighbour>& neighbours)
-        : position_(position),
-          normal_(normal),
-          k_(k),
-          ordered_(k <= 256),
-          squared_radius_(max_squared_radius),
-          neighbours_(neighbours) {
-        neighbours_.clear();
-    }
+    /// `nearest` is the caller's buffer, empty. k >= 1.
+    NearestSink(const GatherQuery& query, std::size_t k, double max_squared_radius, std::vector<FoundPhoton>& nearest)
+        : query_(query), k_(k), ordered_(k <= 256), squared_radius_(max_squared_radius), nearest_(nearest) {}
 
     double reach() const { return std::sqrt(squared_radius_); }
     bool take(const Vector& position, std::size_t index, const Photon& photon) {
-        const Neighbour neighbour{squared_distance_between(position, position_), static_cast<std::uint32_t>(index)};
-        if (neighbour.squared_distance > squared_radius_ || !is_accepted(photon, normal_)) return false;
-        if (neighbours_.size() == k_) {
-            if (!(neighbour < farthest())) return false;
-            if (!ordered_) std::pop_heap(neighbours_.begin(), neighbours_.end());
-            neighbours_.pop_back();
+        const FoundPhoton found{squared_distance_between(position, query_.position), static_cast<std::uint32_t>(index),
+                                0};
+        if (found.squared_distance > squared_radius_ || !PhotonSide(photon).is_accepted_at(query_.normal)) return false;
+        if (nearest_.size() == k_) {
+            if (!is_nearer(found, farthest())) return false;
+            if (!ordered_) std::pop_heap(nearest_.begin(), nearest_.end(), is_nearer);
+            nearest_.pop_back();
         }
         if (ordered_) {
-            neighbours_.insert(std::upper_bound(neighbours_.begin(), neighbours_.end(), neighbour), neighbour);
+            nearest_.insert(std::upper_bound(nearest_.begin(), nearest_.end(), found, is_nearer), found);
         } else {
-            neighbours_.push_back(neighbour);
-            std::push_heap(neighbours_.begin(), neighbours_.end());
+            nearest_.push_back(found);
+            std::push_heap(nearest_.begin(), nearest_.end(), is_nearer);
         }
-        if (neighbours_.size() < k_) return false;
+        if (nearest_.size() < k_) return false;
         squared_radius_ = farthest().squared_distance;
         return true;
     }
 
     /// Nearest first, once the search is over.
     void finish() {
-        if (!ordered_) std::sort_heap(neighbours_.begin(), neighbours_.end());
+        if (!ordered_) std::sort_heap(nearest_.begin(), nearest_.end(), is_nearer);
     }
 
 private:
-    const Neighbour& farthest() const { return ordered_ ? neighbours_.back() : neighbours_.front(); }
+    const FoundPhoton& farthest() const { return ordered_ ? nearest_.back() : nearest_.front(); }
 
-    const Vector position_;
-    const Vector normal_;
+    const GatherQuery& query_;
     const std::size_t k_;
     const bool ordered_;
     double squared_radius_;  // shrinks to the k-th distance once there are k
-    std::vector<Neighbour>& neighbours_;
+    std::vector<FoundPhoton>& nearest_;
 };
 
 }  // namespace
@@ -149,37 +130,51 @@ PhotonMap::PhotonMap(std::vector<Photon> photons) {
                          std::to_string(photons.size()));
 
     const std::uint64_t count = photons.size();
-    const std::uint64_t photon_bytes = count * sizeof(Photon);
-    {
-        std::vector<SortKey> keys(photons.size());
-        std::iota(keys.begin(), keys.end(), SortKey{0});
-        sort_along_curve(photons, keys);
-        permute(photons, keys);
-    }
+    sort_along_curve(photons);
     photons_ = std::move(photons);
-
-    groups_ = PhotonGroups(photons_);
-    // FLANN reports its nodes and permutation, in an int that wraps at 2 GB, and not its pointer to each point nor its
-    // reordered copy of the positions.
-    std::uint64_t index_bytes = groups_.list().size() * (sizeof(float*) + 3 * sizeof(float));
-    for (const GroupTier& tier : groups_.tiers()) {
-        // FLANN takes what it is given as not const, and only reads it.
-        auto* first_centre = const_cast<float*>(&groups_.list()[tier.first].centre.x);
-        const flann::Matrix<float> centres(first_centre, tier.end - tier.first, 3, sizeof(PhotonGroup));
-        indices_.push_back(std::make_unique<Index>(centres, flann::KDTreeSingleIndexParams(leaf_max_size, true)));
-        indices_.back()->buildIndex();
-        index_bytes += static_cast<std::uint32_t>(indices_.back()->usedMemory());
-    }
-    bytes_ = photon_bytes + std::max(2 * count * sizeof(SortKey), groups_.bytes() + index_bytes);
+    search_ = std::make_unique<const GroupSearch>(photons_);
+    bytes_ = count * sizeof(Photon) + std::max(count * sort_bytes_per_photon, search_->bytes());
 }
 
-void PhotonMap::find_nearest(const Vector& position, const Vector& normal, std::size_t k, double max_squared_radius,
-                             double eps, std::vector<Neighbour>& neighbours) const {
-    neighbours.clear();
-    if (k == 0) return;
-    NearestSink sink(position, normal, k, max_squared_radius, neighbours);
-    search(position, eps, sink);
+PhotonMap::PhotonMap(PhotonMap&&) noexcept = default;
+PhotonMap& PhotonMap::operator=(PhotonMap&&) noexcept = default;
+PhotonMap::~PhotonMap() = default;
+
+void PhotonMap::find_within(const std::vector<GatherQuery>& queries, double eps, const TakeRun& take) const {
+    if (!search_) return;
+    const Inexactness given_up = inexactness(eps);
+    RunSink sink(queries, take);
+    for (std::size_t first = 0; first < queries.size();) {
+        const QueryCluster cluster(queries, first, given_up.queries_at_once);
+        sink.begin(cluster);
+        search_->search(photons_, cluster.centre(), given_up.opened_share, sink);
+        first = cluster.end();
+    }
+    sink.flush();
+}
+
+void PhotonMap::find_nearest(const GatherQuery& query, std::size_t k, double eps, NearestPhotons& answer,
+                             const TakeRun& take) const {
+    const double max_radius = std::max(query.radius, minimum_radius);
+    answer = {0, max_radius * max_radius};
+    if (k == 0 || !search_) return;
+
+    // One buffer a thread, so that queries do not allocate. It is borrowed, not shared: `take` may ask the map again.
+    thread_local std::vector<FoundPhoton> spare;
+    std::vector<FoundPhoton> nearest = std::move(spare);
+    nearest.clear();
+    NearestSink sink(query, k, answer.squared_radius, nearest);
+    search_->search(photons_, query.position, inexactness(eps).opened_share, sink);
     sink.finish();
+
+    answer.found = nearest.size();
+    if (nearest.size() == k) {
+        // Photons at one and the same position would make this 0, and it is about to be divided by.
+        answer.squared_radius = std::max(nearest.back().squared_distance, minimum_radius * minimum_radius);
+        nearest.pop_back();
+    }
+    take(nearest);
+    spare = std::move(nearest);
 }
 
 }  // namespace photonlab

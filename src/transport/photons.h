@@ -21,8 +21,8 @@ namespace photonlab {
 /// here can change over; the normal, which only decides whether a photon counts at a hit point, by one degree.
 struct Photon {
     Vector position;
-    Color power;  ///< flux that one emitted path carries here, relative to Scene::total_power; not divided by the number
-                  ///< of paths; times |incoming.normal| / |incoming.geometric normal| (Veach 1996)
+    Color power;  ///< flux that one emitted path carries here, relative to Scene::total_power; not divided by the
+                  ///< number of paths; times |incoming.normal| / |incoming.geometric normal| (Veach 1996)
     PackedDirection incoming;  ///< towards where the photon came from
     CoarseDirection normal;    ///< shading normal on the side on which the photon arrived
     std::uint16_t edges : 15;  ///< edges of the path from the light to here; 1 when it came straight from the light

@@ -20,7 +20,7 @@ namespace photonlab::benchmarks {
 /// True when the photon counts: as PhotonMap decides it.
 inline bool counts(const Photon& photon, const GatherQuery& query) {
     return squared_distance_between(photon.position, query.position) <= query.radius * query.radius &&
-           is_accepted(photon, query.normal);
+           PhotonSide(photon).is_accepted_at(query.normal);
 }
 
 /// Photons sorted by the cell they lie in. [Teschner et al. 2003, without the hash]
@@ -96,7 +96,9 @@ public:
 
     template <typename Visit>
     void within(const GatherQuery& query, const Visit& visit) const {
-        Visitor<Visit> visitor{photons_.list, query, squared_bound(query.radius), visit};
+        // A hair wider, so that float loses nothing at the rim; the exact test follows.
+        const auto bound = static_cast<float>(query.radius * query.radius * (1.0 + 1e-5));
+        Visitor<Visit> visitor{photons_.list, query, bound, visit};
         index_->findNeighbors(visitor, &query.position.x, {});
     }
 

@@ -1,0 +1,94 @@
+#include "gather/photon_order.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "core/morton.h"
+#include "gather/photon_groups.h"
+
+namespace photonlab {
+
+namespace {
+
+/// A place along a curve in the upper half, the photon's index in the lower.
+using SortKey = std::uint64_t;
+static_assert(sort_bytes_per_photon == 2 * sizeof(SortKey));
+
+std::size_t index_of(SortKey key) {
+    return static_cast<std::size_t>(key & 0xffffffffu);
+}
+
+/// By place, then by index, by which they are sorted already: a stable least-significant-digit radix sort, or for few
+/// keys an ordinary one.
+void sort_keys(std::span<SortKey> keys) {
+    constexpr std::size_t few = 2048;
+    if (keys.size() <= few) return std::sort(keys.begin(), keys.end());
+    constexpr unsigned digit_bits = MortonCurve::bits_per_axis;
+    constexpr std::size_t buckets = std::size_t{1} << digit_bits;
+    std::vector<SortKey> other(keys.size());
+    std::span<SortKey> from = keys;
+    std::span<SortKey> to = other;
+    for (unsigned shift = 32; shift < 32 + 3 * digit_bits; shift += digit_bits) {
+        std::array<std::size_t, buckets> starts{};
+        for (const SortKey key : from) ++starts[key >> shift & (buckets - 1)];
+        std::size_t next = 0;
+        for (std::size_t& start : starts) {
+            const std::size_t count = start;
+            start = next;
+            next += count;
+        }
+        for (const SortKey key : from) to[starts[key >> shift & (buckets - 1)]++] = key;
+        std::swap(from, to);
+    }
+    std::copy(from.begin(), from.end(), keys.begin());  // three digits: they are in `other`
+}
+
+/// Puts the keys into the order of their photons along a curve, and those that share a place on it along one of theirs.
+void sort_along_curve(const std::vector<Photon>& photons, std::span<SortKey> keys) {
+    Box box;
+    for (const SortKey key : keys) box.include(photons[index_of(key)].position);
+    const MortonCurve curve(box);
+    for (SortKey& key : keys)
+        key = std::uint64_t{curve.place_of(photons[index_of(key)].position)} << 32 | index_of(key);
+    sort_keys(keys);
+    for (std::size_t first = 0; first < keys.size();) {
+        std::size_t end = first + 1;
+        while (end < keys.size() && keys[end] >> 32 == keys[first] >> 32) ++end;
+        const std::size_t count = end - first;
+        // As many as there are: all of them at one point.
+        if (count > PhotonGroups::capacity && count < keys.size())
+            sort_along_curve(photons, keys.subspan(first, count));
+        first = end;
+    }
+}
+
+/// Puts the photons into the order of the keys, in place: a second copy of them would be the peak of memory.
+void permute(std::vector<Photon>& photons, std::vector<SortKey>& keys) {
+    const auto source = [&](std::size_t place) { return index_of(keys[place]); };
+    for (std::size_t start = 0; start < photons.size(); ++start) {
+        const Photon first = photons[start];
+        std::size_t place = start;
+        while (source(place) != start) {
+            const std::size_t from = source(place);
+            photons[place] = photons[from];
+            keys[place] = place;
+            place = from;
+        }
+        photons[place] = first;
+        keys[place] = place;
+    }
+}
+
+}  // namespace
+
+void sort_along_curve(std::vector<Photon>& photons) {
+    std::vector<SortKey> keys(photons.size());
+    std::iota(keys.begin(), keys.end(), SortKey{0});
+    sort_along_curve(photons, keys);
+    permute(photons, keys);
+}
+
+}  // namespace photonlab

@@ -1,0 +1,20 @@
+// The order in which photons lie in memory: along a Morton curve through them, so that neighbours in the list are
+// mostly neighbours in space. What is built over them is built faster, and what is searched is read in runs.
+
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "transport/photons.h"
+
+namespace photonlab {
+
+/// Sorts the photons, all of them at positions that float can square, in place. Those that share a place of the curve
+/// follow a finer one of their own: a caustic may be smaller than a cell of the scene. Ties stay in their order.
+void sort_along_curve(std::vector<Photon>& photons);
+
+/// Held at once beside each photon while they are sorted.
+inline constexpr std::uint64_t sort_bytes_per_photon = 2 * sizeof(std::uint64_t);
+
+}  // namespace photonlab
