@@ -1,5 +1,5 @@
 // Kernels of density estimation: how a photon at distance d from the centre of a disc of radius r counts, with
-// s = d / r. Each is normalised over the disc; theory.md's table (bias constant, variance relative to the constant
+// s = d / r. Each is normalised over the disc; docs/theory.md's table (bias constant, variance relative to the constant
 // disc) stands in the tests.
 //
 // [Silverman 1986, "Density Estimation for Statistics and Data Analysis", section 4.2]

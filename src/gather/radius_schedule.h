@@ -16,10 +16,10 @@ namespace photonlab {
 
 /// What a hit point accumulates over the passes. Lengths in units of the scene's box.
 struct GatherStatistics {
-    double squared_radius = 0.0;  ///< for the next pass
-    double count = 0.0;           ///< Hachisuka's N: photons kept so far; other schedules: photons seen so far
-    ColorD estimate =
-        ColorD(0.0);  ///< running mean over passes of the pass's own density estimate (theory.md, section 1)
+    double squared_radius = 0.0;    ///< for the next pass
+    double count = 0.0;             ///< Hachisuka's N: photons kept so far; other schedules: photons seen so far
+    ColorD estimate = ColorD(0.0);  ///< running mean over passes of the pass's own density estimate (docs/theory.md,
+                                    ///< section 1)
 };
 
 enum class ScheduleName { Hachisuka, KnausZwicker };
@@ -48,8 +48,8 @@ struct PassGather {
 };
 
 /// Takes a pass: the estimate is the running mean of the passes' own, which needs no product of a million factors
-/// (theory.md, section 1), and the radius shrinks by the schedule, to `least_squared_radius` and no further. A pass
-/// without photons counts.
+/// (docs/theory.md, section 1), and the radius shrinks by the schedule, to `least_squared_radius` and no further. A
+/// pass without photons counts.
 void take_pass(GatherStatistics& statistics, ScheduleName schedule, double alpha, const PassGather& gathered,
                double least_squared_radius);
 

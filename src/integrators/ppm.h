@@ -3,7 +3,7 @@
 //
 // Each pass makes a density estimate of its own at every hit point, with the radius before it shrinks, and the image is
 // the running mean of these: the same numbers as the 2008 paper's shrinking flux, to rounding, and stable over millions
-// of passes (theory.md, section 1; a test shows it).
+// of passes (docs/theory.md, section 1; a test shows it).
 //
 // [Hachisuka, Ogaki & Jensen 2008, "Progressive Photon Mapping"; Knaus & Zwicker 2011]
 

@@ -42,8 +42,8 @@ struct FootOfLight {
         return scene;
     }
 
-    /// Expectation of the estimate over a disc of this radius: theory.md, section 5. Beyond the rim of a disk it is all
-    /// that the floor gets over the area of the larger disc.
+    /// Expectation of the estimate over a disc of this radius: docs/theory.md, section 5. Beyond the rim of a disk it
+    /// is all that the floor gets over the area of the larger disc.
     ColorD radiance(double radius) const {
         const double reached = std::min(radius, floor_radius);
         const double q = std::sqrt(height * height + reached * reached);

@@ -1,6 +1,6 @@
 // Glass at the ends of what it can be: no glass at all, hardly any, the densest; light along its surface and at the
 // critical angle; glass that touches glass; the camera inside. Lossless glass in uniform light is invisible from
-// outside and n^2 times as bright from inside, whatever its shape (theory.md, section 5).
+// outside and n^2 times as bright from inside, whatever its shape (docs/theory.md, section 5).
 
 #include <gtest/gtest.h>
 

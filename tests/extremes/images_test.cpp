@@ -185,7 +185,7 @@ TEST(PlainScene, OfMirrorsAndGlassUnderAPointIsBlack) {
 }
 
 // The inside of a cube of mirrors that shine: Le (1 - rho^d) / (1 - rho) with paths of at most d edges, and without a
-// limit what is missing of Le / (1 - rho) is what was cut, and said to be (theory.md, section 5).
+// limit what is missing of Le / (1 - rho) is what was cut, and said to be (docs/theory.md, section 5).
 TEST(PlainScene, OfMirrorsThatShineIsTheirFurnace) {
     constexpr double radiance = 3.0;
     const Color reflectance(0.5f, 0.25f, 0.75f);

@@ -16,7 +16,7 @@ namespace {
 constexpr double gather_radius = 0.15;
 
 /// A hollow sphere with a point of light in its middle: reflected radiance is I rho (1 - rho^K) / ((1 - rho) pi R^2)
-/// after at most K reflections (theory.md, section 5; power 4 pi I, area 4 pi R^2).
+/// after at most K reflections (docs/theory.md, section 5; power 4 pi I, area 4 pi R^2).
 SceneDescription lit_sphere(const Color& reflectance) {
     SceneDescription scene = hollow_sphere(reflectance);
     scene.point_lights = {point_light(VectorD(0.0), ColorD(1.0))};

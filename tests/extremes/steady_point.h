@@ -3,7 +3,7 @@
 //
 // Photons of density `density` a unit area and pass lie around it, without noise: a pass finds density * pi r^2. Its
 // own estimate is off by a bias that grows with r^2, as that of every kernel does. Then with Hachisuka's update, after
-// n passes (theory.md, sections 1 and 2):
+// n passes (docs/theory.md, sections 1 and 2):
 //
 //     r_n^2 / r_0^2 = Gamma(n + alpha) / (Gamma(alpha) Gamma(n + 1))
 //     N_n           = n density pi r_n^2

@@ -1,4 +1,4 @@
-// Density estimation through PhotonMap against exact expectations (theory.md, sections 1 and 4).
+// Density estimation through PhotonMap against exact expectations (docs/theory.md, sections 1 and 4).
 //
 // All draws are seeded, so a result never changes by itself. Each comparison is a z-test at |z| < 4.5: with other
 // seeds, and all being well, one would fail with a probability of 7e-6; there are about sixty here. Where a wrong

@@ -1,5 +1,5 @@
 // What must not change an image: threads, the unit of light, the unit of length, where the origin is, and which passes
-// were looked at. No reference is needed for any of it (theory.md, section 6).
+// were looked at. No reference is needed for any of it (docs/theory.md, section 6).
 
 #include <gtest/gtest.h>
 

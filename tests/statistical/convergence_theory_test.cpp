@@ -4,7 +4,7 @@
 // With the radii of Knaus and Zwicker, which do not depend on the photons, a pass's estimate is the number of photons
 // in a disc times a constant, and passes are independent. So, after n passes with radii r_i:
 //
-//     E[L_n]   = rho / pi  mean over i of  2 I (1 - h / sqrt(h^2 + r_i^2)) / r_i^2              (theory.md, section 5)
+//     E[L_n]   = rho / pi  mean over i of  2 I (1 - h / sqrt(h^2 + r_i^2)) / r_i^2          (docs/theory.md, section 5)
 //     Var[L_n] = n^-2  sum over i of  (rho Phi / (pi^2 r_i^2 N))^2  N p_i (1 - p_i),   p_i = (1 - h / sqrt(...)) / 2
 //
 // with N paths a pass, Phi = 4 pi I, and p_i the share of the sphere of directions that the disc covers. Claimed are

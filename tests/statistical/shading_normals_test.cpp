@@ -1,6 +1,6 @@
 // Interpolated normals that differ from the surface's own make a BSDF's adjoint another function, so photons need
-// factors that camera paths do not: one at each reflection and one at the gather (theory.md, section 5; Veach 1996).
-// Flat walls whose vertex normals all lean the same way show either factor missing.
+// factors that camera paths do not: one at each reflection and one at the gather (docs/theory.md, section 5; Veach
+// 1996). Flat walls whose vertex normals all lean the same way show either factor missing.
 
 #include <gtest/gtest.h>
 

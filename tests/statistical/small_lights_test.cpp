@@ -1,6 +1,6 @@
 // A floor under a point light, a disc and a sphere: irradiance in closed form, and for photon mapping even its bias,
-// since the mean irradiance over the gather disc is known at any radius (theory.md, section 5). Every method is held to
-// it.
+// since the mean irradiance over the gather disc is known at any radius (docs/theory.md, section 5). Every method is
+// held to it.
 
 #include <gtest/gtest.h>
 

@@ -213,8 +213,8 @@ TEST(MirrorWalls, MakePlatesInfinitePlanes) {
 // The repository's own scenes, small: photons against paths, layer by layer.
 
 // Image means, so that the disc of the gather mostly moves light within the image; what is lost is 0.21 r of the light
-// along the edges of surfaces (theory.md, section 4, integrated over the distance). For walls of width w lit all over
-// that is 4 x 0.21 r / w: 0.9% of the Cornell box (w = 550, r = 6), 0.6% of the others; 1% is allowed for.
+// along the edges of surfaces (docs/theory.md, section 4, integrated over the distance). For walls of width w lit all
+// over that is 4 x 0.21 r / w: 0.9% of the Cornell box (w = 550, r = 6), 0.6% of the others; 1% is allowed for.
 TEST(ScenesOfMirrorsAndGlass, HaveTheSameMeansByPathsAndByPhotons) {
     struct SmallScene {
         std::string name;
