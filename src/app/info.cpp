@@ -15,7 +15,7 @@
 #include "integrators/density_estimate.h"
 #include "scene/loader.h"
 #include "scene/narrow_gaps.h"
-#include "transport/hit_points.h"
+#include "transport/camera_pass.h"
 #include "transport/left_out.h"
 #include "transport/photons.h"
 #include "transport/plain_images.h"

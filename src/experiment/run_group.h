@@ -19,7 +19,7 @@
 #include "experiment/reference.h"
 #include "experiment/runner.h"
 #include "scene/scene.h"
-#include "transport/hit_points.h"
+#include "transport/camera_pass.h"
 
 namespace photonlab {
 

@@ -31,9 +31,8 @@ Inexactness inexactness(double eps) {
 /// Gathers the photons that count at the queries of one cluster after the other, and hands them on in runs.
 class RunSink {
 public:
-    using TakeRun = std::function<void(std::span<const FoundPhoton>)>;
-
-    RunSink(const std::vector<GatherQuery>& queries, const TakeRun& take) : queries_(queries), take_(take) {}
+    RunSink(const std::vector<GatherQuery>& queries, const std::function<void(std::span<const FoundPhoton>)>& take)
+        : queries_(queries), take_(take) {}
 
     void begin(const QueryCluster& cluster) { cluster_ = &cluster; }
 
@@ -63,7 +62,7 @@ private:
     static constexpr std::size_t capacity = 1024;  // 16 KiB: still in the nearest cache when they are handed on
 
     const std::vector<GatherQuery>& queries_;
-    const TakeRun& take_;
+    const std::function<void(std::span<const FoundPhoton>)>& take_;
     const QueryCluster* cluster_ = nullptr;
     std::size_t count_ = 0;
     std::array<FoundPhoton, capacity> run_;
@@ -153,11 +152,11 @@ void PhotonMap::find_within(const std::vector<GatherQuery>& queries, double eps,
     sink.flush();
 }
 
-void PhotonMap::find_nearest(const GatherQuery& query, std::size_t k, double eps, NearestPhotons& answer,
-                             const TakeRun& take) const {
+NearestPhotons PhotonMap::find_nearest(const GatherQuery& query, std::size_t k, double eps,
+                                       const TakeNearest& take) const {
     const double max_radius = std::max(query.radius, minimum_radius);
-    answer = {0, max_radius * max_radius};
-    if (k == 0 || !search_) return;
+    NearestPhotons answer{0, max_radius * max_radius};
+    if (k == 0 || !search_) return answer;
 
     // One buffer a thread, so that queries do not allocate. It is borrowed, not shared: `take` may ask the map again.
     thread_local std::vector<FoundPhoton> spare;
@@ -173,8 +172,9 @@ void PhotonMap::find_nearest(const GatherQuery& query, std::size_t k, double eps
         answer.squared_radius = std::max(nearest.back().squared_distance, minimum_radius * minimum_radius);
         nearest.pop_back();
     }
-    take(nearest);
+    take(nearest, answer.squared_radius);
     spare = std::move(nearest);
+    return answer;
 }
 
 }  // namespace photonlab

@@ -102,16 +102,15 @@ public:
 
     /// Finds the k nearest accepted photons within `max_radius`, then calls `visit(const Photon&, double
     /// squared_distance, double squared_radius)`, nearest first, for those that carry flux: all of them when fewer than
-    /// k were found; else all but the k-th, which sets the radius and carries none (theory.md, section 4).
+    /// k were found; else all but the k-th, which sets the radius and carries none (docs/theory.md, section 4).
     template <typename Visit>
     NearestPhotons nearest(const Vector& position, const Vector& normal, std::size_t k, double max_radius,
                            const Visit& visit, double eps = 0.0) const {
-        NearestPhotons answer;
-        find_nearest({position, normal, max_radius}, k, eps, answer, [&](std::span<const FoundPhoton> carrying) {
-            for (const FoundPhoton& found : carrying)
-                visit(photons_[found.photon], found.squared_distance, answer.squared_radius);
-        });
-        return answer;
+        return find_nearest({position, normal, max_radius}, k, eps,
+                            [&](std::span<const FoundPhoton> carrying, double squared_radius) {
+                                for (const FoundPhoton& found : carrying)
+                                    visit(photons_[found.photon], found.squared_distance, squared_radius);
+                            });
     }
 
     std::size_t size() const { return photons_.size(); }    ///< photons that can be found
@@ -122,13 +121,14 @@ public:
     static constexpr double minimum_radius = 1e-18;
 
 private:
+    // Called once a run, not once a photon; what is bound above fits into them without an allocation.
     using TakeRun = std::function<void(std::span<const FoundPhoton>)>;
+    using TakeNearest = std::function<void(std::span<const FoundPhoton>, double squared_radius)>;
 
     void find_within(const std::vector<GatherQuery>& queries, double eps, const TakeRun& take) const;
 
-    /// The radius of the query is the largest. Sets `answer`, then calls `take` once, with those that carry flux.
-    void find_nearest(const GatherQuery& query, std::size_t k, double eps, NearestPhotons& answer,
-                      const TakeRun& take) const;
+    /// The query's radius is the largest. Calls `take` at most once, with those that carry flux.
+    NearestPhotons find_nearest(const GatherQuery& query, std::size_t k, double eps, const TakeNearest& take) const;
 
     std::vector<Photon> photons_;                // in Morton order
     std::unique_ptr<const GroupSearch> search_;  // over them; none without photons

@@ -14,9 +14,11 @@
 #include "core/parallel.h"
 #include "gather/kernel.h"
 #include "gather/photon_map.h"
+#include "gather/search_order.h"
 #include "integrators/integrator.h"
 #include "scene/scene.h"
-#include "transport/hit_points.h"
+#include "transport/hit_point_list.h"
+#include "transport/path_length.h"
 
 namespace photonlab {
 
@@ -65,32 +67,33 @@ private:
 };
 
 /// Everything within each hit point's own radius, weighted by the kernel: the sums of hit points [range.begin,
-/// range.end), one of the blocks, in order. `radius_of(index)` is in the unit box.
+/// range.end), one of the blocks, in order. `order` is that of `points`; `radius_of(index)` is in the unit box.
 template <typename RadiusOf>
-std::vector<FluxSum> gather_within(const PhotonMap& map, const Scene& scene, const HitPoints& hit_points,
-                                   BlockRange range, const MethodSettings& settings, const RadiusOf& radius_of) {
+std::vector<FluxSum> gather_within(const PhotonMap& map, const Scene& scene, const HitPointList& points,
+                                   const SearchOrder& order, BlockRange range, const MethodSettings& settings,
+                                   const RadiusOf& radius_of) {
     const std::size_t count = range.end - range.begin;
     assert(range.begin % hit_points_per_block == 0);
-    assert(count == std::min(hit_points_per_block, hit_points.points.size() - range.begin));
-    const std::uint8_t* order = &hit_points.search_order[range.begin];
+    assert(count == std::min(hit_points_per_block, points.size() - range.begin));
+    const std::span<const std::uint8_t> places = order.of_block(range);
     std::vector<FluxSum> sums;
     std::vector<GatherQuery> in_list;
     sums.reserve(count);
     in_list.reserve(count);
     for (std::size_t i = range.begin; i < range.end; ++i) {
-        const HitPoint& point = hit_points.points[i];
+        const HitPoint& point = points[i];
         in_list.push_back({point.position, point.normal, radius_of(i)});
         sums.emplace_back(scene, point, settings.max_depth);
     }
     std::vector<GatherQuery> queries;
     queries.reserve(count);
-    for (std::size_t place = 0; place < count; ++place) queries.push_back(in_list[order[place]]);
+    for (const std::uint8_t place : places) queries.push_back(in_list[place]);
     map.within_each(
         queries,
-        [&](std::size_t place, const Photon& photon, double squared_distance) {
-            const double squared_radius = queries[place].radius * queries[place].radius;
-            sums[order[place]].add(photon,
-                                   kernel_weight(settings.kernel, std::min(1.0, squared_distance / squared_radius)));
+        [&](std::size_t query, const Photon& photon, double squared_distance) {
+            const double squared_radius = queries[query].radius * queries[query].radius;
+            sums[places[query]].add(photon,
+                                    kernel_weight(settings.kernel, std::min(1.0, squared_distance / squared_radius)));
         },
         settings.eps);
     return sums;
@@ -100,11 +103,14 @@ std::vector<FluxSum> gather_within(const PhotonMap& map, const Scene& scene, con
 /// disc of 1e-6 still has its area to 0.2%, one of 1e-7 to 5%. The largest is largest_length.
 inline constexpr double smallest_initial_radius = 1e-7;
 
-/// Initial gather radius of a hit point, unit box: the setting (scene units), or so many footprints of the pixel there.
+/// A radius in the unit box: what was chosen (scene units), or what is taken when nothing was (unit box).
+inline double chosen_radius(const std::optional<double>& chosen, double otherwise, const Scene& scene) {
+    return std::max(chosen ? *chosen / scene.unit_length : otherwise, smallest_initial_radius);
+}
+
+/// Initial gather radius of a hit point, unit box: the setting, or so many footprints of the pixel there.
 inline double initial_radius(const MethodSettings& settings, const IntegratorContext& context, std::size_t index) {
-    const double radius = settings.radius ? *settings.radius / context.scene.unit_length
-                                          : settings.footprints * context.hit_points.footprints[index];
-    return std::max(radius, smallest_initial_radius);
+    return chosen_radius(settings.radius, settings.footprints * context.hit_points.footprints[index], context.scene);
 }
 
 }  // namespace photonlab

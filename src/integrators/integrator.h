@@ -13,7 +13,7 @@
 #include "integrators/photon_supply.h"
 #include "integrators/settings.h"
 #include "scene/scene.h"
-#include "transport/hit_points.h"
+#include "transport/camera_pass.h"
 
 namespace photonlab {
 

@@ -4,6 +4,7 @@
 
 #include "core/parallel.h"
 #include "transport/direct_light.h"
+#include "transport/path_length.h"
 
 namespace photonlab {
 

@@ -5,13 +5,13 @@
 #include "integrators/layers.h"
 #include "scene/emitter.h"
 #include "transport/direct_light.h"
+#include "transport/path_length.h"
 
 namespace photonlab {
 
 namespace {
 
 constexpr std::uint32_t roulette_after = 3;  // bounces: most paths of a bright scene matter until then
-constexpr float highest_survival = 0.99f;
 
 /// What one path found: light reflected once at the hit point, and light reflected there after other reflections.
 struct PathSample {

@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "gather/photon_map.h"
+#include "gather/search_order.h"
 #include "integrators/density_estimate.h"
 #include "integrators/layers.h"
 
@@ -22,19 +23,17 @@ struct Search {
 class PhotonMapping : public Integrator {
 public:
     PhotonMapping(const MethodSettings& settings, const IntegratorContext& context)
-        : settings_(settings), context_(context), direct_(context, settings) {
-        const double unit_length = context.scene.unit_length;
-        const auto unit_box = [&](const std::optional<double>& given, double otherwise) {
-            return std::max(given ? *given / unit_length : otherwise, smallest_initial_radius);
-        };
+        : settings_(settings), context_(context), direct_(context, settings), order_(context.hit_points.points) {
         global_.k = static_cast<std::size_t>(settings.k);
         caustic_.k = static_cast<std::size_t>(settings.caustic_k);
-        global_.max_radius = unit_box(settings.max_radius, default_share_of_scene * context.scene.bounding_radius);
-        caustic_.max_radius = unit_box(settings.caustic_max_radius, default_caustic_share * global_.max_radius);
+        const Scene& scene = context.scene;
+        global_.max_radius = chosen_radius(settings.max_radius, default_share_of_scene * scene.bounding_radius, scene);
+        caustic_.max_radius =
+            chosen_radius(settings.caustic_max_radius, default_caustic_share * global_.max_radius, scene);
         const std::size_t points = context.hit_points.points.size();
         global_.radii.assign(points, global_.max_radius);
         global_.counts.assign(points, 0);
-        if (has_specular_surfaces(context.scene)) {
+        if (has_specular_surfaces(scene)) {
             caustic_.radii.assign(points, caustic_.max_radius);
             caustic_.counts.assign(points, 0);
         }
@@ -42,7 +41,8 @@ public:
         if (settings.mode == GatherMode::Nearest) return;
         for (std::size_t i = 0; i < points; ++i) {
             global_.radii[i] = initial_radius(settings, context, i);
-            if (!caustic_.radii.empty()) caustic_.radii[i] = unit_box(settings.caustic_radius, global_.radii[i]);
+            if (!caustic_.radii.empty())
+                caustic_.radii[i] = chosen_radius(settings.caustic_radius, global_.radii[i], scene);
         }
     }
 
@@ -75,7 +75,7 @@ public:
     IntegratorReport report() const override {
         IntegratorReport report = report_;
         report.hit_point_bytes = hit_point_bytes(context_.hit_points) + radiance_.size() * sizeof(ColorD) +
-                                 global_.bytes() + caustic_.bytes() + direct_.bytes();
+                                 order_.bytes() + global_.bytes() + caustic_.bytes() + direct_.bytes();
         set_radii(
             report, global_.radii.size(), [&](std::size_t i) { return global_.radii[i]; }, context_.scene.unit_length);
         return report;
@@ -108,11 +108,10 @@ private:
         std::vector<std::uint64_t> gathered(blocks, 0);
         parallel_for(blocks, context_.threads, [&](std::size_t block) {
             const BlockRange range = block_range(block, points.size(), hit_points_per_block);
-            const std::vector<FluxSum> sums =
-                settings_.mode == GatherMode::Radius
-                    ? gather_within(map, context_.scene, context_.hit_points, range, settings_,
-                                    [&](std::size_t i) { return search.radii[i]; })
-                    : gather_nearest(map, search, range);
+            const std::vector<FluxSum> sums = settings_.mode == GatherMode::Radius
+                                                  ? gather_within(map, context_.scene, points, order_, range, settings_,
+                                                                  [&](std::size_t i) { return search.radii[i]; })
+                                                  : gather_nearest(map, search, range);
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 const FluxSum& sum = sums[i - range.begin];
                 radiance_[i] += sum.flux() / (pi * search.radii[i] * search.radii[i]);
@@ -143,6 +142,7 @@ private:
     const MethodSettings settings_;
     const IntegratorContext context_;
     DirectLight direct_;
+    const SearchOrder order_;
     Search global_;
     Search caustic_;                // light that came by mirrors and glass alone; apart, since it is so much denser
     std::vector<ColorD> radiance_;  // one a hit point, of the last gather, in shares of all emitted light

@@ -5,6 +5,7 @@
 #include "core/parallel.h"
 #include "gather/photon_map.h"
 #include "gather/radius_schedule.h"
+#include "gather/search_order.h"
 #include "integrators/density_estimate.h"
 #include "integrators/layers.h"
 
@@ -20,6 +21,7 @@ public:
         : settings_(settings),
           context_(context),
           direct_(context, settings),
+          order_(context.hit_points.points),
           statistics_(context.hit_points.points.size()) {
         for (std::size_t i = 0; i < statistics_.size(); ++i) {
             const double radius = initial_radius(settings, context, i);
@@ -40,7 +42,7 @@ public:
         parallel_for(blocks, context_.threads, [&](std::size_t block) {
             const BlockRange range = block_range(block, statistics_.size(), hit_points_per_block);
             const std::vector<FluxSum> sums =
-                gather_within(map, context_.scene, context_.hit_points, range, settings_,
+                gather_within(map, context_.scene, context_.hit_points.points, order_, range, settings_,
                               [&](std::size_t i) { return std::sqrt(statistics_[i].squared_radius); });
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 const FluxSum& sum = sums[i - range.begin];
@@ -69,8 +71,8 @@ public:
 
     IntegratorReport report() const override {
         IntegratorReport report = report_;
-        report.hit_point_bytes =
-            hit_point_bytes(context_.hit_points) + statistics_.size() * sizeof(GatherStatistics) + direct_.bytes();
+        report.hit_point_bytes = hit_point_bytes(context_.hit_points) + order_.bytes() +
+                                 statistics_.size() * sizeof(GatherStatistics) + direct_.bytes();
         set_radii(
             report, statistics_.size(), [&](std::size_t i) { return std::sqrt(statistics_[i].squared_radius); },
             context_.scene.unit_length);
@@ -119,6 +121,7 @@ private:
     const MethodSettings settings_;
     const IntegratorContext context_;
     DirectLight direct_;
+    const SearchOrder order_;
     std::uint64_t passes_ = 0;                  // taken so far, from whichever pass they began at
     std::vector<GatherStatistics> statistics_;  // joined with the hit points by index
     IntegratorReport report_;

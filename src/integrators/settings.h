@@ -12,7 +12,7 @@
 #include "core/names.h"
 #include "gather/kernel.h"
 #include "gather/radius_schedule.h"
-#include "transport/hit_points.h"
+#include "transport/camera_pass.h"
 
 namespace photonlab {
 

@@ -13,8 +13,8 @@ namespace photonlab {
 
 /// One unoccluded connection of a surface to a light.
 struct ConnectedLight {
-    ColorD contribution;  ///< radiance reflected towards the viewer, divided by the density of the connection:
-                          ///< unbiased, its noise is that of the choice of light and of the point on it
+    ColorD contribution;   ///< radiance reflected towards the viewer, divided by the density of the connection:
+                           ///< unbiased, its noise is that of the choice of light and of the point on it
     double light_density;  ///< per steradian, with which this direction was drawn, the choice of light included;
                            ///< 0 for a point light, which no other technique can find
     double bsdf_density;   ///< per steradian, with which the material would have drawn it; 0 for a point light

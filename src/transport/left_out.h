@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scene/scene.h"
-#include "transport/hit_points.h"
+#include "transport/camera_pass.h"
 
 namespace photonlab {
 

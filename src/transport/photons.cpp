@@ -5,16 +5,14 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "scene/emitter.h"
+#include "transport/path_length.h"
 
 namespace photonlab {
 
 namespace {
 
-constexpr std::size_t block_size = 256;  // paths that a thread traces at a time
-constexpr std::size_t blocks_per_round =
-    128;                                    // then joined: their photons are still in the cache, their memory is reused
-constexpr std::uint32_t edge_cap = 10'000;  // ends light that is trapped; what it cuts is counted
-constexpr float highest_survival = 0.99f;   // so that a path among white surfaces ends, too
+constexpr std::size_t block_size = 256;        // paths that a thread traces at a time
+constexpr std::size_t blocks_per_round = 128;  // then joined: still in the cache, and their memory is reused
 
 /// Asymmetry of the BSDF's adjoint under shading normals, for a photon that arrives against `arriving` and leaves along
 /// `leaving`: |arriving.ns leaving.ng| / |arriving.ng leaving.ns|. 1 on a flat surface. [Veach 1996, section 5.3]

@@ -13,7 +13,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/morton.h"
 #include "gather/photon_map.h"
+#include "gather/photon_order.h"
 
 namespace photonlab::benchmarks {
 
@@ -28,17 +30,13 @@ class UniformGrid {
 public:
     /// `cell` is the wanted width of a cell; they are widened until there are no more than four a photon.
     UniformGrid(std::vector<Photon> photons, double cell) : cell_(cell) {
-        Vector upper(-infinity);
-        lower_ = Vector(infinity);
-        for (const Photon& photon : photons)
-            for (int axis = 0; axis < 3; ++axis) {
-                lower_[axis] = std::min(lower_[axis], photon.position[axis]);
-                upper[axis] = std::max(upper[axis], photon.position[axis]);
-            }
+        Box box;
+        for (const Photon& photon : photons) box.include(photon.position);
+        lower_ = box.lower;
         for (;; cell_ *= 1.25) {
             for (int axis = 0; axis < 3; ++axis)
                 cells_[static_cast<std::size_t>(axis)] =
-                    static_cast<std::int64_t>((static_cast<double>(upper[axis]) - lower_[axis]) / cell_) + 1;
+                    static_cast<std::int64_t>((static_cast<double>(box.upper[axis]) - lower_[axis]) / cell_) + 1;
             if (cells_[0] * cells_[1] * cells_[2] <= 4 * static_cast<std::int64_t>(photons.size())) break;
         }
         starts_.assign(static_cast<std::size_t>(cells_[0] * cells_[1] * cells_[2]) + 1, 0);
@@ -134,21 +132,8 @@ private:
     };
 
     static std::vector<Photon> sorted(std::vector<Photon> photons) {
-        const auto key = [](const Photon& photon) {
-            std::uint64_t bits = 0;  // scenes lie in a unit box around the origin
-            for (int axis = 0; axis < 3; ++axis) {
-                const auto cell = static_cast<std::uint64_t>((photon.position[axis] + 1.0f) * 511.0f);
-                for (int bit = 0; bit < 10; ++bit) bits |= (cell >> bit & 1) << (3 * bit + axis);
-            }
-            return bits;
-        };
-        std::vector<std::pair<std::uint64_t, std::size_t>> order(photons.size());
-        for (std::size_t i = 0; i < photons.size(); ++i) order[i] = {key(photons[i]), i};
-        std::sort(order.begin(), order.end());
-        std::vector<Photon> result;
-        result.reserve(photons.size());
-        for (const auto& [bits, i] : order) result.push_back(photons[i]);
-        return result;
+        sort_along_curve(photons);
+        return photons;
     }
 
     Photons photons_;

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "core/parallel.h"
+#include "gather/search_order.h"
 #include "integrators/registry.h"
 #include "scene/loader.h"
 
@@ -27,12 +29,15 @@ Work make_work() {
         if (pass == 1 || pass == late_pass) {
             const std::size_t which = pass == 1 ? 0 : 1;
             work.photons[which] = traced.photons;
-            for (std::size_t place = 0; place < work.hit_points.points.size(); ++place) {
-                const std::size_t i =
-                    place - place % hit_points_per_block + std::size_t{work.hit_points.search_order[place]};
-                const HitPoint& point = work.hit_points.points[i];
-                work.queries[which].push_back(
-                    {point.position, point.normal, ppm->gather_state(i).value().radius / work.scene.unit_length});
+            const HitPointList& points = work.hit_points.points;
+            const SearchOrder order(points);
+            for (std::size_t block = 0; block < block_count(points.size(), hit_points_per_block); ++block) {
+                const BlockRange range = block_range(block, points.size(), hit_points_per_block);
+                for (const std::uint8_t place : order.of_block(range)) {
+                    const std::size_t i = range.begin + place;
+                    const double radius = ppm->gather_state(i).value().radius / work.scene.unit_length;
+                    work.queries[which].push_back({points[i].position, points[i].normal, radius});
+                }
             }
         }
         supply.begin_pass(std::move(traced));

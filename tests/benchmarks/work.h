@@ -11,7 +11,7 @@
 #include "integrators/integrator.h"
 #include "integrators/settings.h"
 #include "scene/scene.h"
-#include "transport/hit_points.h"
+#include "transport/camera_pass.h"
 #include "transport/photons.h"
 
 namespace photonlab::benchmarks {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "integrators/registry.h"
-#include "transport/hit_points.h"
+#include "transport/camera_pass.h"
 #include "transport/photons.h"
 
 namespace photonlab::test {

@@ -2,11 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <string>
+#include <vector>
 
 #include "core/error.h"
-#include "core/parallel.h"
-#include "scene/loader.h"
 #include "tests/statistical/rendering.h"
 #include "tests/statistical/scenes.h"
 
@@ -61,32 +60,6 @@ TEST(HitPoints, FootprintIsTheWidthOfAPixelThere) {
     }
 }
 
-// The image shows a floor and a wall behind it: where they meet, what is above each other in the image is not in space.
-TEST(HitPoints, AreSearchedBlockByBlockEachPointOnceAndNeighboursAfterEachOther) {
-    const Scene scene =
-        build_scene(load_scene_file(PHOTONLAB_SOURCE_DIR "/scenes/cornell-spheres/scene.xml"), Resolution{64, 64});
-    const HitPoints hit_points = trace_hit_points(scene, 1, 1);
-    const std::size_t count = hit_points.points.size();
-    ASSERT_EQ(hit_points.search_order.size(), count);
-    double along_list = 0.0;
-    double along_order = 0.0;
-    for (std::size_t block = 0; block < block_count(count, hit_points_per_block); ++block) {
-        const BlockRange range = block_range(block, count, hit_points_per_block);
-        std::vector<std::uint8_t> places(hit_points.search_order.begin() + static_cast<std::ptrdiff_t>(range.begin),
-                                         hit_points.search_order.begin() + static_cast<std::ptrdiff_t>(range.end));
-        const auto step = [&](std::size_t from, std::size_t to) {
-            return (hit_points.points[from].position - hit_points.points[to].position).length();
-        };
-        for (std::size_t i = 1; i < places.size(); ++i) {
-            along_list += step(range.begin + i - 1, range.begin + i);
-            along_order += step(range.begin + places[i - 1], range.begin + places[i]);
-        }
-        std::sort(places.begin(), places.end());
-        for (std::size_t i = 0; i < places.size(); ++i) ASSERT_EQ(places[i], i);
-    }
-    EXPECT_LT(along_order, 0.6 * along_list);
-}
-
 TEST(HitPoints, AreTheSameOnAnyNumberOfThreads) {
     const Scene scene = build_scene(room(50, 37));
     const HitPoints one = trace_hit_points(scene, 4, 1);
@@ -102,60 +75,8 @@ TEST(HitPoints, AreTheSameOnAnyNumberOfThreads) {
     }
 }
 
-/// Some on one surface, some that differ from their neighbours in one thing each.
-std::vector<HitPoint> assorted_points() {
-    std::vector<HitPoint> points;
-    for (std::uint32_t i = 0; i < 100; ++i) {
-        HitPoint point{.position = Vector(static_cast<float>(i), 0.5f, 0.25f),
-                       .normal = Vector(0, 1, 0),
-                       .geometric_normal = Vector(0, 1, 0),
-                       .outgoing = Vector(0.6f, 0.8f, 0.0f),
-                       .weight = Color(0.25f),
-                       .pixel = i / 3,
-                       .material = static_cast<std::uint16_t>(i % 50 == 7 ? 65'535 : 2),
-                       .camera_edges = static_cast<std::uint16_t>(i % 5 == 0 ? 10'000 : 1),
-                       .texture_coordinate = Imath::V2f(static_cast<float>(i), 0.5f)};
-        if (i % 7 == 3) point.geometric_normal = Vector(0.0f, 0.6f, static_cast<float>(i));
-        if (i % 11 == 4) point.normal = Vector(static_cast<float>(i), 0.6f, 0.8f);
-        if (i % 13 == 6) point.weight = Color(0.25f, 0.25f, 0.125f);
-        points.push_back(point);
-    }
-    return points;
-}
-
-TEST(HitPointList, GivesBackWhatItWasGiven) {
-    const std::vector<HitPoint> points = assorted_points();
-    for (const HitPointList::Kept kept :
-         {HitPointList::Kept{false, false}, {false, true}, {true, false}, {true, true}}) {
-        HitPointList first(0.25f, kept);
-        HitPointList list(0.25f, kept);
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            HitPointList& target = i < 40 ? list : first;
-            target.push_back(points[i], i % 3 == 0 || !kept.outgoing);
-        }
-        list.append(first);
-        ASSERT_EQ(list.size(), points.size());
-        std::size_t i = 0;
-        for (const HitPoint& point : list) {
-            const HitPoint& given = points[i];
-            const bool is_diffuse = i % 3 == 0 || !kept.outgoing;
-            EXPECT_EQ(point.position, given.position);
-            EXPECT_EQ(point.normal, given.normal);
-            EXPECT_EQ(point.geometric_normal, given.geometric_normal);
-            EXPECT_EQ(point.outgoing, is_diffuse ? given.normal : given.outgoing);
-            EXPECT_EQ(point.weight, given.weight);
-            EXPECT_EQ(point.pixel, given.pixel);
-            EXPECT_EQ(point.material, given.material);
-            EXPECT_EQ(point.camera_edges, given.camera_edges);
-            EXPECT_EQ(point.texture_coordinate, kept.texture_coordinates ? given.texture_coordinate : Imath::V2f(0.0f));
-            ++i;
-        }
-    }
-    EXPECT_THROW(HitPointList().at(0), std::out_of_range);
-}
-
 // Flat and diffuse, seen directly: nothing but position, pixel and where the rest is.
-TEST(HitPointList, TakesTwentyBytesForAPointLikeItsNeighbours) {
+TEST(HitPoints, TakeTwentyBytesEachWhereTheyAreLikeTheirNeighbours) {
     const Scene scene = build_scene(floor_from_above(160, 160));
     const HitPoints hit_points = trace_hit_points(scene, 1, 1);
     ASSERT_EQ(hit_points.points.size(), 160u * 160u);

@@ -1,0 +1,67 @@
+// The camera pass: where each sample position of the image sees a non-specular surface. Every integrator, PM, PPM and
+// the path tracer alike, starts from these same points, so what differs between them is what they estimate there
+// and nothing else.
+//
+// Mirrors and glass are followed into all their branches, without chance, until a branch meets a surface that can be
+// gathered at, or carries too little to be seen.
+//
+// [Hachisuka et al. 2008, "Progressive Photon Mapping": the eye pass]
+
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/math.h"
+#include "scene/scene.h"
+#include "transport/hit_point_list.h"
+
+namespace photonlab {
+
+/// Light that the camera sees without a bounce at a hit point.
+struct SeenEmission {
+    std::uint32_t pixel;
+    std::uint32_t edges;  ///< of the path from the camera to the light; 1 when seen directly
+    ColorD radiance;      ///< times the path's throughput and the sample's share of the pixel
+};
+
+/// The result of the camera pass.
+struct HitPoints {
+    int width = 0;
+    int height = 0;
+    int samples_per_pixel = 1;
+    HitPointList points;  ///< tile by tile and along a Morton curve in each, so that neighbours in the list are
+                          ///< neighbours in space; those of a pixel follow each other
+    std::vector<float>
+        footprints;  ///< one a point, unit box: unfolded distance from the camera times the pixel's angle
+    std::vector<SeenEmission> emission;  ///< that of a pixel follows each other
+    double weight_cut = 0.0;             ///< throughput of the branches that were ended, mean channel, mean over pixels
+    std::uint64_t nonfinite = 0;         ///< camera paths that met a non-finite value
+};
+
+/// Where camera branches end unless a method says otherwise, and always those of a reference.
+inline constexpr double default_branch_cutoff = 1e-4;
+
+/// Traces the deterministic grid of sample positions: `samples_per_pixel` is a perfect square, 1 is the pixel's centre.
+/// Specular branches whose throughput (strongest channel) is below `branch_cutoff`, above 0, end, and so do those of
+/// 10,000 edges.
+HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int threads,
+                           double branch_cutoff = default_branch_cutoff);
+
+/// The same through another camera than the scene's: of fewer pixels, to know what is coming.
+HitPoints trace_hit_points(const Scene& scene, const Camera& camera, int samples_per_pixel, int threads,
+                           double branch_cutoff);
+
+inline std::size_t pixel_count(const HitPoints& hit_points) {
+    return static_cast<std::size_t>(hit_points.width) * static_cast<std::size_t>(hit_points.height);
+}
+
+/// Of the points and what is kept with them.
+inline std::uint64_t hit_point_bytes(const HitPoints& hit_points) {
+    return hit_points.points.bytes() + hit_points.footprints.size() * sizeof(float);
+}
+
+/// One a pixel: the emission that paths of at most max_depth edges see.
+std::vector<ColorD> emission_image(const HitPoints& hit_points, int max_depth);
+
+}  // namespace photonlab
