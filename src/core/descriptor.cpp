@@ -10,8 +10,9 @@
 namespace photonlab {
 
 // O_NONBLOCK is for a pipe that has the name, which would wait for somebody at its other end.
-Descriptor::Descriptor(const std::filesystem::path& file, int flags)
-    : number_(::open(file.c_str(), flags | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666)) {}
+Descriptor::Descriptor(const std::filesystem::path& file, int flags, Links links)
+    : number_(::open(file.c_str(), flags | O_CLOEXEC | O_NONBLOCK | (links == Links::Refused ? O_NOFOLLOW : 0), 0666)) {
+}
 
 Descriptor::Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
 

@@ -19,12 +19,14 @@ struct FileIdentity {
     bool operator==(const FileIdentity&) const = default;
 };
 
+enum class Links { Refused, Followed };
+
 class Descriptor {
 public:
     Descriptor() = default;
 
-    /// open() with these flags, never through a link; errno says why when it is not open.
-    Descriptor(const std::filesystem::path& file, int flags);
+    /// open() with these flags; errno says why when it is not open. What is written is never written through a link.
+    Descriptor(const std::filesystem::path& file, int flags, Links links = Links::Refused);
 
     Descriptor(Descriptor&& other) noexcept;
     Descriptor& operator=(Descriptor&& other) noexcept;

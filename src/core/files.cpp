@@ -19,23 +19,6 @@ namespace photonlab {
 
 namespace {
 
-/// A POSIX file descriptor: streams do not say whether the disk took what they were given.
-class Descriptor {
-public:
-    Descriptor(const std::filesystem::path& file, int flags) : number_(::open(file.c_str(), flags | O_CLOEXEC, 0666)) {}
-    ~Descriptor() {
-        if (number_ >= 0) ::close(number_);
-    }
-    Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
-    Descriptor& operator=(Descriptor&&) = delete;
-
-    bool is_open() const { return number_ >= 0; }
-    int number() const { return number_; }
-
-private:
-    int number_;
-};
-
 std::string cannot_be_read() {
     return std::string("cannot be read: ") + std::strerror(errno);
 }
@@ -54,7 +37,7 @@ Descriptor open_ordinary_file(const std::filesystem::path& file) {
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
         throw InputError(file.string(), "expected a file, this is a pipe or a device");
     if (error) throw InputError(file.string(), "cannot be read: " + error.message());
-    Descriptor descriptor(file, O_RDONLY | O_NONBLOCK | O_NOCTTY);
+    Descriptor descriptor(file, O_RDONLY | O_NOCTTY, Links::Followed);
     if (!descriptor.is_open()) throw InputError(file.string(), cannot_be_read());
     char byte = 0;
     if (size_of(descriptor) == 0 && ::read(descriptor.number(), &byte, 1) != 0)

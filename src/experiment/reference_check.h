@@ -30,7 +30,7 @@
 #include "experiment/settings_io.h"
 #include "image/image.h"
 #include "scene/scene.h"
-#include "transport/hit_points.h"
+#include "transport/camera_pass.h"
 
 namespace photonlab {
 
