@@ -60,7 +60,7 @@ void require_own_table(const Experiment& experiment, const std::filesystem::path
     start.resize(static_cast<std::size_t>(stream.gcount()));
     const std::string row = start.substr(std::min(start.find('\n'), start.size() - 1) + 1);
     const bool is_of_this =
-        row.substr(std::min(row.find(','), row.size())).starts_with(fmt::format(",{},", csv_quoted(experiment.name)));
+        row.substr(std::min(row.find(','), row.size())).starts_with(fmt::format(",{},", csv_cell(experiment.name)));
     if (start.empty()) return;
     if (!start.starts_with("schema,experiment,run,") || (!row.empty() && !is_of_this))
         throw InputError(file.string(), fmt::format("is there already, and is no table of the experiment {}; {}",

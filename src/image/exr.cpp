@@ -104,7 +104,7 @@ bool has_channels(const Imf::ChannelList& channels, const std::string& prefix) {
 /// Says what is missing of three channels, which something is.
 [[noreturn]] void refuse_channels(const std::string& place, const Imf::ChannelList& channels,
                                   const std::string& prefix) {
-    for (const std::string name : {prefix + "R", prefix + "G", prefix + "B"})
+    for (const std::string& name : {prefix + "R", prefix + "G", prefix + "B"})
         if (!channels.findChannel(name))
             throw InputError(place, "has no channel " + name + "; it has: " + channel_names(channels) +
                                         (channels.findChannel("Y") ? " (luminance is not read as grey)" : ""));

@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "core/text.h"
 #include "tests/image/scratch_folder.h"
 
 namespace photonlab {

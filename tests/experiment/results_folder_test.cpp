@@ -142,7 +142,7 @@ TEST_F(ResultsFolder, OfAnEarlierProgramIsKnownByItsRuns) {
 
 TEST_F(ResultsFolder, OfAnExperimentWithAnyNameIsKnown) {
     for (const std::string name : {"a, b", "say \"a\"", "two\nlines", "=1+1"}) {
-        folder_.write("results/iterations.csv", header_ + "1," + csv_quoted(name) + ",box_ppm_seed-1\n");
+        folder_.write("results/iterations.csv", header_ + "1," + csv_cell(name) + ",box_ppm_seed-1\n");
         EXPECT_EQ(refusal(experiment(name)), "");
         EXPECT_NE(refusal(experiment("a")), "");
         claim_results(experiment(name), results());

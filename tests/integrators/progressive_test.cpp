@@ -28,7 +28,7 @@ MethodSettings progressive(ScheduleName schedule, double alpha) {
 }
 
 FluxSum gather_at_first(const Scene& scene, const HitPoints& hit_points, const PhotonPass& pass, double radius) {
-    return gather_within(PhotonMap(pass.photons), scene, hit_points, {0, 1}, {},
+    return gather_within(PhotonMap(pass.photons), scene, hit_points.points, SearchOrder(hit_points.points), {0, 1}, {},
                          [&](std::size_t) { return radius; })[0];
 }
 
