@@ -9,9 +9,11 @@
 #include <type_traits>
 
 #include "app/commands.h"
+#include "app/limits.h"
 #include "app/options.h"
 #include "core/messages.h"
 #include "experiment/experiment_file.h"
+#include "experiment/memory.h"
 #include "integrators/density_estimate.h"
 #include "scene/loader.h"
 #include "scene/narrow_gaps.h"
@@ -90,6 +92,7 @@ void print_narrow_gaps(const Scene& scene) {
 void info(const InfoOptions& options) {
     std::optional<Resolution> resolution;
     if (!options.resolution.empty()) resolution = parse_resolution(options.resolution);
+    start_threads(hardware_threads());
     const Scene scene = build_scene(load_scene_file(options.scene), resolution);
     const Camera& camera = scene.camera;
     const VectorD position = VectorD(camera.position) * scene.unit_length + scene.centre;
@@ -105,6 +108,9 @@ void info(const InfoOptions& options) {
     print_output("size        bounding radius {:.6g}, around {:.6g} {:.6g} {:.6g} (scene units)\n",
                  scene.bounding_radius * scene.unit_length, scene.centre.x, scene.centre.y, scene.centre.z);
 
+    RunSettings paths;
+    paths.method.integrator = "path";
+    require_memory(options.scene.string(), MemoryEstimator(scene, 1).of({paths}, 0));
     const HitPoints hit_points = trace_hit_points(scene, 1, hardware_threads());
     const std::size_t count = hit_points.points.size();
     print_output("hit points  {} at one sample a pixel\n", count);

@@ -17,6 +17,7 @@
 #include "app/command_line.h"
 #include "app/commands.h"
 #include "app/interruption.h"
+#include "app/limits.h"
 #include "core/error.h"
 #include "core/messages.h"
 #include "experiment/version.h"
@@ -36,10 +37,11 @@ std::string one_line(std::string text) {
 
 /// OpenMP's threads spin while they wait, which takes processor time from those that work and from other programs (two
 /// threads: 1.6 times as fast as one with it, 1.8 without). The environment says otherwise, but is read before main():
-/// so the program starts once more.
+/// so the program starts once more, as it does for the stack of threads.
 void start_with_passive_waiting(char** argv) {
     constexpr const char* policy = "OMP_WAIT_POLICY";
-    if (std::getenv(policy)) return;
+    const bool is_raised = photonlab::raise_limits();
+    if (std::getenv(policy) && !is_raised) return;
     if (::setenv(policy, "passive", 0) == 0) ::execv("/proc/self/exe", argv);  // where that fails, it goes on as it is
 }
 
@@ -103,6 +105,7 @@ int main(int argc, char** argv) {
     std::signal(SIGXFSZ, SIG_IGN);  // a file that grows beyond a quota is an error of writing like any other
     std::signal(SIGPIPE, SIG_IGN);  // and so is a pipe whose reader has left
     try {
+        photonlab::require_stack();
         return run_program(argc, argv);
     } catch (const photonlab::InputError& error) {
         return report(error.what(), bad_input);
@@ -111,7 +114,7 @@ int main(int argc, char** argv) {
     } catch (const std::system_error& error) {  // of files and threads
         return report(error.what(), bad_input);
     } catch (const std::bad_alloc&) {
-        return report("the system gives no more memory", bad_input);
+        return report(photonlab::no_memory_message(), bad_input);
     } catch (const std::exception& error) {
         return report(std::string("internal error: ") + error.what(), internal_error);
     }

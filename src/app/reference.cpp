@@ -7,6 +7,7 @@
 
 #include "app/commands.h"
 #include "app/interruption.h"
+#include "app/limits.h"
 #include "app/options.h"
 #include "core/messages.h"
 #include "experiment/experiment_file.h"
@@ -28,6 +29,7 @@ struct ReferenceOptions {
 void make_reference(ReferenceOptions options) {
     std::optional<Resolution> resolution;
     if (!options.resolution.empty()) resolution = parse_resolution(options.resolution);
+    start_threads(options.settings.threads);
     const Scene scene = build_scene(load_scene_file(options.settings.scene_file), resolution);
     options.settings.max_depth = options.max_depth.value_or(scene.max_depth);
 

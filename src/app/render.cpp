@@ -11,6 +11,7 @@
 
 #include "app/commands.h"
 #include "app/interruption.h"
+#include "app/limits.h"
 #include "app/options.h"
 #include "core/file_lock.h"
 #include "core/files.h"
@@ -27,6 +28,7 @@
 #include "experiment/runner.h"
 #include "experiment/version.h"
 #include "image/exr.h"
+#include "image/image_codecs.h"
 #include "image/png.h"
 #include "integrators/registry.h"
 #include "scene/loader.h"
@@ -162,6 +164,7 @@ void render(const RenderOptions& options) {
     std::optional<Resolution> resolution;
     if (!options.resolution.empty()) resolution = parse_resolution(options.resolution);
 
+    start_threads(options.threads);
     const Scene scene = build_scene(load_scene_file(options.scene), resolution);
     RunSettings settings{resolve(chosen, scene.max_depth), options.seed, options.passes, options.threads, {}};
     check_options([&] { require_resolvable(settings.method, scene); });
@@ -177,6 +180,7 @@ void render(const RenderOptions& options) {
     for (const std::string& file : {options.csv, options.png, options.checkpoint})
         if (!file.empty()) require_writable(file);
     if (!snapshots.empty()) require_writable(snapshot_file(options.output, snapshots.back()));  // the longest name
+    if (!options.png.empty()) image_codecs();  // so large that there may be no room for them in memory
 
     const auto pixels =
         static_cast<std::uint64_t>(scene.camera.width) * static_cast<std::uint64_t>(scene.camera.height);
@@ -188,7 +192,7 @@ void render(const RenderOptions& options) {
     std::set_union(recorded.begin(), recorded.end(), snapshots.begin(), snapshots.end(),
                    std::back_inserter(settings.estimated));
 
-    const MemoryEstimate memory = estimate_memory(scene, options.samples_per_pixel, {settings}, 0);
+    const MemoryEstimate memory = MemoryEstimator(scene, options.samples_per_pixel).of({settings}, 0);
     require_memory(options.scene.string(), memory);
     print_output("memory      {}\n", describe(memory));
 

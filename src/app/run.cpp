@@ -7,6 +7,7 @@
 
 #include "app/commands.h"
 #include "app/interruption.h"
+#include "app/limits.h"
 #include "app/options.h"
 #include "core/messages.h"
 #include "experiment/experiment_file.h"
@@ -30,8 +31,12 @@ void run(const RunOptions& options) {
         read_experiment(options.experiment, options.smoke ? std::optional(SmokeLimits{}) : std::nullopt);
     const std::filesystem::path results =
         options.output.empty() ? std::filesystem::path("results") / experiment.name : options.output;
+    start_threads(experiment.threads);
     const auto only = options.only.empty() ? std::nullopt : std::optional(options.only);
-    const PreparedExperiment prepared = prepare_experiment(experiment, results, only);
+    const PreparedExperiment prepared =
+        prepare_experiment(experiment, results, only, options.list ? Check::Sizes : Check::Records);
+    for (const std::string& fault : prepared.faults)
+        print_message("photonlab: {}; what is damaged is made again\n", fault);
     if (options.list) {
         print_output("{}", list_runs(experiment, prepared));
         return;

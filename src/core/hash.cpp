@@ -6,8 +6,10 @@
 #include <fmt/format.h>
 
 #include <cstdint>
-#include <limits>
+#include <fstream>
+#include <vector>
 
+#include "core/error.h"
 #include "core/files.h"
 
 namespace photonlab {
@@ -45,7 +47,14 @@ std::string RunningHash::text() const {
 }
 
 std::string hash_file(const std::filesystem::path& file) {
-    return hash_text(read_text_file(file, std::numeric_limits<std::uintmax_t>::max()));
+    require_ordinary_file(file);
+    std::ifstream stream(file, std::ios::binary);
+    RunningHash hash;
+    std::vector<char> piece(std::size_t{1} << 20);
+    while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())) || stream.gcount() > 0)
+        hash.add(piece.data(), static_cast<std::size_t>(stream.gcount()));
+    if (stream.bad() || !stream.is_open()) throw InputError(file.string(), "cannot be read to its end");
+    return hash.text();
 }
 
 }  // namespace photonlab

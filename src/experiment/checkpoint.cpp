@@ -16,7 +16,6 @@ namespace {
 
 constexpr std::array<char, 16> signature{'p', 'h', 'o', 't', 'o', 'n', 'l', 'a',
                                          'b', ' ', 's', 't', 'a', 't', 'e', '\n'};
-constexpr std::uint32_t format = 1;  // to be raised when a state's exchange() changes
 constexpr std::uint64_t checksum_length = 32;
 
 InputError refusal(const std::string& place, const std::string& reason, const Checkpoint& checkpoint) {
@@ -58,15 +57,15 @@ void load_checkpoint(std::istream& stream, const std::string& place, const Check
     std::string identity;
     try {
         archive.exchange(stored_format);
-        if (stored_format == format) archive.exchange(identity);
+        if (stored_format == checkpoint_format) archive.exchange(identity);
     } catch (const InputError& error) {
         throw refusal(place, std::string("is damaged: ") + error.what(), checkpoint);
     }
-    if (stored_format != format)
-        throw refusal(
-            place,
-            "is of format " + std::to_string(stored_format) + ", and this program reads " + std::to_string(format),
-            checkpoint);
+    if (stored_format != checkpoint_format)
+        throw refusal(place,
+                      "is of format " + std::to_string(stored_format) + ", and this program reads " +
+                          std::to_string(checkpoint_format),
+                      checkpoint);
     if (identity != checkpoint.identity)
         throw refusal(
             place, "is of another run: its settings, scene, reference, passes or the program's version were different",
@@ -110,7 +109,7 @@ void save(const Checkpoint& checkpoint, const StateExchange& state) {
     std::ofstream stream(temporary.path(), std::ios::binary | std::ios::trunc);
     StateArchive archive(stream);
     auto start = signature;
-    std::uint32_t stored_format = format;
+    std::uint32_t stored_format = checkpoint_format;
     std::string identity = checkpoint.identity;
     archive.exchange(start);
     archive.exchange(stored_format);

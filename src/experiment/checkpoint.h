@@ -8,6 +8,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <iosfwd>
 #include <string>
@@ -15,6 +16,8 @@
 #include "core/state_archive.h"
 
 namespace photonlab {
+
+inline constexpr std::uint32_t checkpoint_format = 2;  ///< to be raised when a state's exchange() changes
 
 /// Where a run keeps its state.
 struct Checkpoint {

@@ -6,15 +6,16 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "core/hash.h"
 #include "core/nearest.h"
 #include "experiment/progress.h"
+#include "experiment/recorder.h"
 #include "experiment/reference.h"
 #include "experiment/results_folder.h"
 #include "experiment/run_record.h"
 #include "experiment/settings_io.h"
-#include "experiment/time_estimate.h"
 #include "experiment/version.h"
 #include "integrators/registry.h"
 #include "scene/loader.h"
@@ -50,6 +51,7 @@ std::string point_key(const Experiment& experiment, const ExperimentRun& run, co
         {"experiment", experiment.name},
         {"point", run.point},
         {"settings", settings_json(settings.method)},
+        {"columns", csv_header()},
         {"passes", settings.passes},
         {"recorded", run.plan.recorded},
         {"width", scene.camera.width},
@@ -83,13 +85,9 @@ std::size_t images_kept(const Experiment& experiment, const PreparedRun& run) {
 
 }  // namespace
 
-bool is_finished(const std::filesystem::path& folder, const std::string& key) {
-    const std::optional<FinishedRun> run = read_finished_run(folder);
-    return run && run->key == key && faults_of(folder, *run, Check::Records).empty();
-}
-
 bool is_made(const Experiment& experiment, const PreparedRun& run, const std::filesystem::path& results) {
-    return is_finished(run.folder, run.key) &&
+    const std::optional<FinishedRun> finished = read_finished_run(run.folder);
+    return finished && finished->key == run.key && faults_of(run.folder, *finished, Check::Records).empty() &&
            (!experiment.decomposition || ensemble_of(experiment, run, results).contains(run.run->seed));
 }
 
@@ -97,65 +95,142 @@ ReferenceSubject subject_of(const Scene& scene, int samples_per_pixel, int max_d
     return {scene.hash, scene.camera.width, scene.camera.height, samples_per_pixel, max_depth};
 }
 
-PreparedExperiment prepare_experiment(const Experiment& experiment, const std::filesystem::path& results,
-                                      const std::optional<std::string>& only) {
-    require_own_results(experiment, results);
-    return prepare_runs(experiment, results, select_runs(experiment, only));
-}
+namespace {
 
-PreparedExperiment prepare_runs(const Experiment& experiment, const std::filesystem::path& results,
-                                const std::vector<const ExperimentRun*>& runs) {
-    PreparedExperiment prepared;
-    prepared.scenes.resize(experiment.scenes.size());
-    std::map<std::pair<std::size_t, int>, std::string> reference_keys;  // by scene and depth
-    for (const ExperimentRun* run : runs) {
-        const SceneEntry& entry = experiment.scenes[run->scene];
-        std::optional<Scene>& scene = prepared.scenes[run->scene];
+/// Prepares runs, each scene, reference and point once.
+class Preparation {
+public:
+    Preparation(const Experiment& experiment, const std::filesystem::path& results, Check check)
+        : experiment_(experiment), results_(results), check_(check) {
+        prepared_.scenes.resize(experiment.scenes.size());
+    }
+
+    void add(const ExperimentRun& run) {
+        const Point& point = point_of(run);
+        PreparedRun ready{&run, point.settings, "", point.key, results_ / "runs" / run.name, false};
+        ready.settings.seed = run.seed;
+        ready.key = hash_text(fmt::format("{} {} {}", point.key, run.seed, point.snapshots));
+        ready.finished = is_as_it_finished(ready) && (!point.ensemble || point.ensemble->contains(run.seed));
+        prepared_.runs.push_back(std::move(ready));
+    }
+
+    PreparedExperiment finish() {
+        if (experiment_.decomposition) check_ensembles();
+        return std::move(prepared_);
+    }
+
+private:
+    /// What runs have in common that differ in their seed alone.
+    struct Point {
+        RunSettings settings;
+        std::string key;
+        std::string snapshots;
+        std::optional<Ensemble> ensemble;
+    };
+
+    const Scene& scene_of(const ExperimentRun& run) {
+        const SceneEntry& entry = experiment_.scenes[run.scene];
+        std::optional<Scene>& scene = prepared_.scenes[run.scene];
         if (!scene) {
             scene = build_scene(load_scene_file(entry.file), entry.resolution);
-            require_inside(experiment.file, entry, *scene);
+            require_inside(experiment_.file, entry, *scene);
         }
-
-        PreparedRun ready;
-        ready.run = run;
-        ready.settings.method = resolve(run->settings, scene->max_depth);
-        try {
-            require_resolvable(ready.settings.method, *scene);
-        } catch (const InputError& error) {
-            throw InputError(experiment.file.string(), fmt::format("run {}: {}", run->name, error.what()));
-        }
-        ready.settings.seed = run->seed;
-        ready.settings.passes = run->plan.passes;
-        ready.settings.threads = experiment.threads;
-        std::set_union(run->plan.recorded.begin(), run->plan.recorded.end(), run->plan.snapshots.begin(),
-                       run->plan.snapshots.end(), std::back_inserter(ready.settings.estimated));
-        std::string reference_key;
-        if (entry.reference) {
-            const auto [known, is_new] = reference_keys.try_emplace({run->scene, ready.settings.method.max_depth});
-            if (is_new)
-                known->second = check_reference(*entry.reference, subject_of(*scene, experiment.samples_per_pixel,
-                                                                             ready.settings.method.max_depth));
-            reference_key = known->second;
-        }
-        ready.point_key = point_key(experiment, *run, ready.settings, *scene, reference_key);
-        ready.key = hash_text(fmt::format("{} {} {}", ready.point_key, run->seed, Json(run->plan.snapshots).dump()));
-        ready.folder = results / "runs" / run->name;
-        ready.finished = is_made(experiment, ready, results);
-        prepared.runs.push_back(std::move(ready));
+        return *scene;
     }
-    return prepared;
+
+    /// Empty without one.
+    std::string reference_key_of(const ExperimentRun& run, const Scene& scene, int max_depth) {
+        const SceneEntry& entry = experiment_.scenes[run.scene];
+        if (!entry.reference) return "";
+        const auto [known, is_new] = reference_keys_.try_emplace({run.scene, max_depth});
+        if (is_new)
+            known->second =
+                check_reference(*entry.reference, subject_of(scene, experiment_.samples_per_pixel, max_depth));
+        return known->second;
+    }
+
+    const Point& point_of(const ExperimentRun& run) {
+        const auto [known, is_new] = points_.try_emplace(run.point);
+        Point& point = known->second;
+        if (!is_new) return point;
+        const Scene& scene = scene_of(run);
+        point.settings.method = resolve(run.settings, scene.max_depth);
+        try {
+            require_resolvable(point.settings.method, scene);
+        } catch (const InputError& error) {
+            throw InputError(experiment_.file.string(), fmt::format("run {}: {}", run.name, error.what()));
+        }
+        point.settings.passes = run.plan.passes;
+        point.settings.threads = experiment_.threads;
+        std::set_union(run.plan.recorded.begin(), run.plan.recorded.end(), run.plan.snapshots.begin(),
+                       run.plan.snapshots.end(), std::back_inserter(point.settings.estimated));
+        point.key = point_key(experiment_, run, point.settings, scene,
+                              reference_key_of(run, scene, point.settings.method.max_depth));
+        point.snapshots = Json(run.plan.snapshots).dump();
+        if (experiment_.decomposition)
+            point.ensemble = ensemble_of(experiment_, {&run, point.settings, "", point.key, {}, false}, results_);
+        return point;
+    }
+
+    /// Of a run that finished with this key and is damaged it says so.
+    bool is_as_it_finished(const PreparedRun& ready) {
+        const std::optional<FinishedRun> run = read_finished_run(ready.folder);
+        if (!run && std::filesystem::exists(ready.folder / "run.json"))
+            prepared_.faults.push_back((ready.folder / "run.json").string() + ": is damaged, or another program's");
+        if (!run || run->key != ready.key) return false;
+        std::vector<std::string> faults = faults_of(ready.folder, *run, check_);
+        std::move(faults.begin(), faults.end(), std::back_inserter(prepared_.faults));
+        return faults.empty();
+    }
+
+    /// Sums that something is still to be added to are read, where records are.
+    void check_ensembles() {
+        std::set<std::string> unfinished;
+        for (const PreparedRun& ready : prepared_.runs)
+            if (!ready.finished) unfinished.insert(ready.run->point);
+        for (auto& [name, point] : points_) {
+            if (check_ != Check::Sizes && unfinished.contains(name)) point.ensemble->check_slots();
+            const auto& faults = point.ensemble->faults();
+            prepared_.faults.insert(prepared_.faults.end(), faults.begin(), faults.end());
+        }
+        for (PreparedRun& ready : prepared_.runs)
+            ready.finished = ready.finished && points_.at(ready.run->point).ensemble->contains(ready.run->seed);
+    }
+
+    const Experiment& experiment_;
+    const std::filesystem::path& results_;
+    const Check check_;
+    PreparedExperiment prepared_;
+    std::map<std::pair<std::size_t, int>, std::string> reference_keys_;  // by scene and depth
+    std::map<std::string, Point> points_;                                // by name
+};
+
+}  // namespace
+
+PreparedExperiment prepare_experiment(const Experiment& experiment, const std::filesystem::path& results,
+                                      const std::optional<std::string>& only, Check check) {
+    require_own_results(experiment, results);
+    Preparation preparation(experiment, results, check);
+    for (const ExperimentRun* run : select_runs(experiment, only)) preparation.add(*run);
+    return preparation.finish();
 }
 
-std::vector<RunsTogether> runs_together(const std::vector<PreparedRun>& runs) {
+std::vector<RunsTogether> runs_together(const std::vector<PreparedRun>& runs, const RunsFit& fit) {
     std::vector<RunsTogether> groups;
+    // Those that a run may fit into: of one scene and seed there are few.
+    std::map<std::tuple<std::size_t, std::uint64_t, std::uint64_t, std::uint64_t>, std::vector<std::size_t>> alike;
     for (const PreparedRun& run : runs) {
-        const auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& candidate) {
-            return candidate[0]->run->scene == run.run->scene && can_run_together(candidate[0]->settings, run.settings);
+        const RunSettings& settings = run.settings;
+        auto& candidates = alike[{run.run->scene, settings.seed, settings.passes, settings.method.photons_per_pass}];
+        const auto group = std::find_if(candidates.begin(), candidates.end(), [&](std::size_t candidate) {
+            return fit(groups[candidate][0]->settings, settings);
         });
-        if (group != groups.end())
-            group->push_back(&run);
-        else
+        if (group != candidates.end()) {
+            groups[*group].push_back(&run);
+        } else {
+            candidates.push_back(groups.size());
             groups.push_back({&run});
+        }
     }
     for (auto& group : groups) std::erase_if(group, [](const PreparedRun* run) { return run->finished; });
     std::erase_if(groups, [](const auto& group) { return group.empty(); });
@@ -166,6 +241,7 @@ std::optional<GroupMemory> largest_memory(const Experiment& experiment, const Pr
                                           const std::vector<RunsTogether>& groups) {
     std::optional<GroupMemory> largest;
     std::set<std::string> known;
+    std::map<std::size_t, MemoryEstimator> estimators;  // by scene
     for (const auto& group : groups) {
         std::vector<RunSettings> settings;
         std::string points;
@@ -174,26 +250,69 @@ std::optional<GroupMemory> largest_memory(const Experiment& experiment, const Pr
             points += run->run->point + "\n";
         }
         if (!known.insert(points).second) continue;
-        const MemoryEstimate estimate =
-            estimate_memory(*prepared.scenes[group[0]->run->scene], experiment.samples_per_pixel, settings,
-                            images_kept(experiment, *group[0]));
+        const std::size_t scene = group[0]->run->scene;
+        MemoryEstimator& estimator =
+            estimators.try_emplace(scene, *prepared.scenes[scene], experiment.samples_per_pixel).first->second;
+        const MemoryEstimate estimate = estimator.of(settings, images_kept(experiment, *group[0]));
         if (!largest || estimate.total() > largest->estimate.total()) largest = {group[0]->run->name, estimate};
     }
     return largest;
 }
 
-std::string list_runs(const Experiment& experiment, const PreparedExperiment& prepared) {
+namespace {
+
+struct Cost {
+    TimeEstimate time;
+    double mebibytes = 0.0;
+};
+
+/// What each run takes, estimated once a point.
+class Costs {
+public:
+    Costs(const Experiment& experiment, const PreparedExperiment& prepared, const TimeEstimator& estimate)
+        : experiment_(experiment), prepared_(prepared), estimate_(estimate) {}
+
+    const Cost& of(const PreparedRun& run) {
+        const auto [known, is_new] = costs_.try_emplace(run.run->point);
+        if (!is_new) return known->second;
+        const std::size_t index = run.run->scene;
+        const Scene& scene = *prepared_.scenes[index];
+        MemoryEstimator& memory = memory_.try_emplace(index, scene, experiment_.samples_per_pixel).first->second;
+        const double cutoff = run.settings.method.branch_cutoff;
+        const auto [view, is_view_new] = views_.try_emplace({index, cutoff});
+        if (is_view_new)
+            view->second = trace_coarse_view(scene, experiment_.samples_per_pixel, experiment_.threads, cutoff);
+        known->second = {estimate_(scene, view->second, run.settings),
+                         memory.of({run.settings}, images_kept(experiment_, run)).total()};
+        return known->second;
+    }
+
+private:
+    const Experiment& experiment_;
+    const PreparedExperiment& prepared_;
+    const TimeEstimator& estimate_;
+    std::map<std::string, Cost> costs_;                           // by point
+    std::map<std::size_t, MemoryEstimator> memory_;               // by scene
+    std::map<std::pair<std::size_t, double>, CoarseView> views_;  // by scene and cutoff
+};
+
+/// "64", or "16 to 64"; never of no runs.
+std::string passes_text(const std::vector<PreparedRun>& runs) {
+    const auto [fewest, most] = std::minmax_element(
+        runs.begin(), runs.end(),
+        [](const PreparedRun& a, const PreparedRun& b) { return a.settings.passes < b.settings.passes; });
+    return fewest->settings.passes == most->settings.passes
+               ? fmt::format("{}", most->settings.passes)
+               : fmt::format("{} to {}", fewest->settings.passes, most->settings.passes);
+}
+
+}  // namespace
+
+std::string list_runs(const Experiment& experiment, const PreparedExperiment& prepared, const TimeEstimator& estimate) {
     std::size_t width = 0;
     for (const PreparedRun& ready : prepared.runs) width = std::max(width, ready.run->name.size());
     std::string list = fmt::format("{}\n\n", experiment.title);
-    struct Cost {
-        TimeEstimate time;
-        double mebibytes;
-    };
-    std::map<std::string, Cost> costs;  // by scene and settings: seeds do not change them
-    std::optional<std::size_t> current_scene;
-    double current_cutoff = 0.0;
-    HitPoints hit_points;
+    Costs costs(experiment, prepared, estimate);
     double seconds = 0.0;
     const auto groups = runs_together(prepared.runs);
     std::set<const PreparedRun*> first_of_group;
@@ -203,33 +322,13 @@ std::string list_runs(const Experiment& experiment, const PreparedExperiment& pr
             list += fmt::format("{:<{}}  finished\n", ready.run->name, width);
             continue;
         }
-        const Scene& scene = *prepared.scenes[ready.run->scene];
-        const double cutoff = ready.settings.method.branch_cutoff;
-        if (current_scene != ready.run->scene || current_cutoff != cutoff)
-            hit_points = trace_hit_points(scene, experiment.samples_per_pixel, experiment.threads, cutoff);
-        current_scene = ready.run->scene;
-        current_cutoff = cutoff;
-        const auto [known, is_new] =
-            costs.try_emplace(fmt::format("{} {}", ready.run->scene, settings_json(ready.settings.method).dump()));
-        if (is_new)
-            known->second = {
-                estimate_time(scene, hit_points, ready.settings),
-                estimate_memory(scene, experiment.samples_per_pixel, {ready.settings}, images_kept(experiment, ready))
-                    .total()};
-        const auto& [time, mebibytes] = known->second;
+        const auto& [time, mebibytes] = costs.of(ready);
         seconds += time.seconds - (first_of_group.contains(&ready) ? 0.0 : time.trace_seconds);
         list += fmt::format("{:<{}}  about {}, up to {:.0f} MiB\n", ready.run->name, width,
                             describe_duration(time.seconds), mebibytes);
     }
-    const auto by_passes = [](const PreparedRun& a, const PreparedRun& b) {
-        return a.settings.passes < b.settings.passes;
-    };
-    const auto [fewest, most] = std::minmax_element(prepared.runs.begin(), prepared.runs.end(), by_passes);
-    const std::string passes = fewest->settings.passes == most->settings.passes
-                                   ? fmt::format("{}", most->settings.passes)
-                                   : fmt::format("{} to {}", fewest->settings.passes, most->settings.passes);
-    list += fmt::format("\n{} runs of {} passes on {} threads: about {} in all\n", prepared.runs.size(), passes,
-                        experiment.threads, describe_duration(seconds));
+    list += fmt::format("\n{} runs of {} passes on {} threads: about {} in all\n", prepared.runs.size(),
+                        passes_text(prepared.runs), experiment.threads, describe_duration(seconds));
     if (const auto largest = largest_memory(experiment, prepared, groups))
         list += fmt::format("memory of runs that share photons: {}\n", describe(largest->estimate));
     return list;

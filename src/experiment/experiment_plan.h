@@ -4,14 +4,17 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "experiment/experiment_file.h"
+#include "experiment/kept_files.h"
 #include "experiment/memory.h"
 #include "experiment/reference.h"
 #include "experiment/run_group.h"
+#include "experiment/time_estimate.h"
 #include "scene/scene.h"
 
 namespace photonlab {
@@ -19,22 +22,17 @@ namespace photonlab {
 struct PreparedExperiment {
     std::vector<std::optional<Scene>> scenes;  ///< by index of Experiment::scenes; only those that a selected run needs
     std::vector<PreparedRun> runs;             ///< the selected ones
+    std::vector<std::string> faults;           ///< of what had finished and is made again, one line each
 };
 
 /// Loads scenes and checks references for the runs whose name matches `only` (a shell pattern; empty: all). Throws
-/// InputError before anything is run or written, also when the results folder is not the experiment's. `experiment`
-/// must outlive the result.
+/// InputError before anything is run or written, also when the results folder is not the experiment's. How closely
+/// the files of finished runs are looked at is `check`. `experiment` must outlive the result.
 PreparedExperiment prepare_experiment(const Experiment& experiment, const std::filesystem::path& results,
-                                      const std::optional<std::string>& only = std::nullopt);
+                                      const std::optional<std::string>& only = std::nullopt,
+                                      Check check = Check::Records);
 
-/// The same of these runs, whosever the folder is.
-PreparedExperiment prepare_runs(const Experiment& experiment, const std::filesystem::path& results,
-                                const std::vector<const ExperimentRun*>& runs);
-
-/// True when the folder holds a run that finished with this key, and its records are as they were then.
-bool is_finished(const std::filesystem::path& folder, const std::string& key);
-
-/// The same, and that the ensemble has the run's images.
+/// True when the run finished with its key, its files are as they were then, and the ensemble has its images.
 bool is_made(const Experiment& experiment, const PreparedRun& run, const std::filesystem::path& results);
 
 /// What a reference of the scene must be of.
@@ -43,9 +41,12 @@ ReferenceSubject subject_of(const Scene& scene, int samples_per_pixel, int max_d
 /// Runs that share their photons and hit points; never empty.
 using RunsTogether = std::vector<const PreparedRun*>;
 
+/// Whether two runs of one scene can.
+using RunsFit = std::function<bool(const RunSettings&, const RunSettings&)>;
+
 /// What is not finished, in groups. They are in the order that they would have if nothing was finished, whatever is:
 /// sums over seeds then go into the same slots.
-std::vector<RunsTogether> runs_together(const std::vector<PreparedRun>& runs);
+std::vector<RunsTogether> runs_together(const std::vector<PreparedRun>& runs, const RunsFit& fit = can_run_together);
 
 struct GroupMemory {
     std::string first_run;
@@ -57,6 +58,8 @@ std::optional<GroupMemory> largest_memory(const Experiment& experiment, const Pr
                                           const std::vector<RunsTogether>& groups);
 
 /// One line a run: name, estimated time and memory, or that it is finished; then the sums.
-std::string list_runs(const Experiment& experiment, const PreparedExperiment& prepared);
+/// Points are estimated once, however many seeds they have.
+std::string list_runs(const Experiment& experiment, const PreparedExperiment& prepared,
+                      const TimeEstimator& estimate = estimate_time);
 
 }  // namespace photonlab

@@ -256,7 +256,8 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
 
     // Runs outside the selection may be finished too: their keys need their scenes, so all are prepared for the merge.
     const bool is_all = prepared.runs.size() == experiment.runs.size();
-    const PreparedExperiment all = is_all ? PreparedExperiment{} : prepare_experiment(experiment, results);
+    const PreparedExperiment all =
+        is_all ? PreparedExperiment{} : prepare_experiment(experiment, results, std::nullopt, Check::Sizes);
     std::vector<RunToMerge> runs;
     for (const PreparedRun& ready : is_all ? prepared.runs : all.runs) runs.push_back({ready.folder, ready.key});
     const auto lock = FileLock::wait_for(results / "lock", options.is_interrupted);

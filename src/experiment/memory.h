@@ -1,13 +1,14 @@
 // How much memory runs will take, before they are started, and how much there is.
 //
-// Hit points are counted by a camera of at most 64 x 64 pixels with the same view, so that what mirrors and glass split
-// is in it; photons by 10,000 paths. Both are scaled, and a tenth is added: the estimate is
-// above what is taken, by up to a factor of two.
+// Hit points are counted in a coarse view (coarse_view.h), photons in 10,000 paths. Both are scaled, and a tenth is
+// added: the estimate is above what is taken, by up to a factor of two.
 
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "experiment/runner.h"
@@ -24,14 +25,48 @@ struct MemoryEstimate {
     double total() const { return program + hit_points + photons + images; }
 };
 
-/// Of methods that run together; `kept_images` are held by each until its end.
-MemoryEstimate estimate_memory(const Scene& scene, int samples_per_pixel, const std::vector<RunSettings>& together,
-                               std::size_t kept_images);
+/// Estimates for runs of one scene, which it counts once.
+class MemoryEstimator {
+public:
+    MemoryEstimator(const Scene& scene, int samples_per_pixel) : scene_(scene), samples_per_pixel_(samples_per_pixel) {}
 
-/// Mebibytes that this process can still have: of the machine, of its control group, of its own limit.
-double available_mebibytes();
+    /// Of methods that run together; `kept_images` are held by each until its end.
+    MemoryEstimate of(const std::vector<RunSettings>& together, std::size_t kept_images);
 
-/// "up to 812 MiB (scene 30, hit points 410, photons 250, images 122) of 7421 MiB available"
+private:
+    struct HitPointSize {
+        double count = 0.0;
+        double bytes_each = 0.0;  ///< once it is stored
+    };
+    /// Of the photons of a pass.
+    struct PhotonSize {
+        double photon_bytes = 0.0;
+        double map_bytes = 0.0;
+    };
+    const HitPointSize& hit_point_size(double branch_cutoff);
+    const PhotonSize& photon_size(const RunSettings& settings);
+    double photon_bytes(const std::vector<RunSettings>& together);
+
+    const Scene& scene_;
+    const int samples_per_pixel_;
+    std::map<double, HitPointSize> hit_points_;                                 // by cutoff
+    std::map<std::tuple<std::uint64_t, int, DirectMode>, PhotonSize> photons_;  // by paths, depth, what is stored
+};
+
+/// Mebibytes that this process can still have, and who says so.
+struct AvailableMemory {
+    double mebibytes = 0.0;
+    std::string limit;  ///< "available", "left by the control group /a", "left by ulimit -v"
+};
+
+/// The least of what the machine, the process's control groups and its own limits leave.
+AvailableMemory available_memory();
+
+/// What the process holds now.
+double resident_mebibytes();
+
+/// "up to 812 MiB (scene 30, hit points 410, photons 250, images 122) of 7421 MiB available"; what the program holds
+/// already is in both.
 std::string describe(const MemoryEstimate& estimate);
 
 /// Throws InputError with the numbers when it cannot fit.

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/files.h"
+#include "experiment/kept_files.h"
 #include "experiment/recorder.h"
 #include "experiment/settings_io.h"
 #include "experiment/version.h"
@@ -98,9 +99,9 @@ bool holds_runs(const std::filesystem::path& results) {
 /// Refuses what experiment.json says, if it is not of this experiment.
 void require_own_description(const Experiment& experiment, const std::filesystem::path& results) {
     const std::filesystem::path file = description_file(results);
-    const Json json = parse_sound_json(read_text_file(file, largest_json)).value_or(Json());
+    const Json json = checked_json(read_text_file(file, largest_json)).value_or(Json::object());
     const auto text = [&](const char* name) {
-        const auto found = json.is_object() ? json.find(name) : json.end();
+        const auto found = json.find(name);
         return found != json.end() && found->is_string() ? std::optional(found->get<std::string>()) : std::nullopt;
     };
     const auto name = text("experiment");
@@ -144,9 +145,17 @@ void claim_results(const Experiment& experiment, const std::filesystem::path& re
                     {"title", experiment.title},
                     {"file", whole_path(experiment.file)},
                     {"program", {{"name", "photonlab"}, {"version", program_version().version}}}};
-    const std::string text = json_text(json) + "\n";
+    const std::string text = with_checksum(json);
     const std::filesystem::path file = description_file(results);
     if (!std::filesystem::exists(file) || read_text_file(file, largest_json) != text) write_text_file(file, text);
+}
+
+std::optional<std::string> experiment_of_results(const std::filesystem::path& results) {
+    const std::filesystem::path file = description_file(results);
+    if (!std::filesystem::exists(file)) return std::nullopt;
+    const std::optional<Json> json = checked_json(read_text_file(file, largest_json));
+    const Json name = json ? json->value("experiment", Json()) : Json();
+    return name.is_string() ? std::optional(name.get<std::string>()) : std::nullopt;
 }
 
 }  // namespace photonlab

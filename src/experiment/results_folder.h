@@ -1,6 +1,7 @@
 // Whose a results folder is. RESULTS/experiment.json names its experiment, and is the first file that goes into it:
 //
-//     {"schema": 1, "experiment": "alpha-study", "smoke": false, "title": ..., "file": ..., "program": ...}
+//     {"schema": 1, "experiment": "alpha-study", "smoke": false, "title": ..., "file": ..., "program": ...,
+//      "checksum": "..."}                                                                     kept_files.h
 //
 // A folder without it, as earlier programs left them, is an experiment's when all that is called as results are says
 // so. What is there under such a name and is nobody's results is refused: it is never replaced.
@@ -8,6 +9,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 
 #include "experiment/experiment_file.h"
 
@@ -19,5 +22,8 @@ void require_own_results(const Experiment& experiment, const std::filesystem::pa
 
 /// The same, and writes experiment.json where it is not as it should be. For whoever holds the folder's lock.
 void claim_results(const Experiment& experiment, const std::filesystem::path& results);
+
+/// The experiment that a folder names; empty when experiment.json is not there or damaged.
+std::optional<std::string> experiment_of_results(const std::filesystem::path& results);
 
 }  // namespace photonlab

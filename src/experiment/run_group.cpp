@@ -60,6 +60,7 @@ struct OpenRun {
     Recorder recorder;
     std::vector<PassImage> recorded_images;  // for the ensemble
     std::string probes;                      // rows
+    std::vector<FileStamp> snapshots;        // that are written, in the order of record.snapshots
 };
 
 void exchange(StateArchive& archive, PassImage& image) {
@@ -79,6 +80,10 @@ void exchange(StateArchive& archive, OpenRun& run) {
     run.recorder.exchange(archive);
     archive.exchange_each(run.recorded_images, [](StateArchive& each, PassImage& image) { exchange(each, image); });
     archive.exchange(run.probes);
+    archive.exchange_each(run.snapshots, [](StateArchive& each, FileStamp& stamp) {
+        each.exchange(stamp.bytes);
+        each.exchange(stamp.hash);
+    });
 }
 
 /// Everything a run has in its folder goes, but for its checkpoint, which is set aside.
@@ -112,6 +117,7 @@ OpenRun open_run(const RunGroup& group, const PreparedRun& prepared) {
                   group.scene.camera.height, group.experiment.samples_per_pixel, group.hit_points.points.size()},
                  group.reference, prepared.folder / "iterations.csv"),
         {},
+        {},
         {}};
 }
 
@@ -124,12 +130,25 @@ bool add_to_ensemble(const RunGroup& group, const OpenRun& run, const std::funct
     return true;
 }
 
+/// What the run has written so far must be there when it is said to be finished. Where it is not, the checkpoint, which
+/// goes on from later passes, is of no use any more.
+void require_snapshots(const OpenRun& run) {
+    for (std::size_t i = 0; i < run.snapshots.size(); ++i) {
+        const auto fault =
+            fault_of(run.prepared->folder / run.record.snapshots[i].file, run.snapshots[i], Check::Everything);
+        if (!fault) continue;
+        discard(run.checkpoint);
+        throw InputError(*fault + ", a moment ago; its run begins anew the next time");
+    }
+}
+
 /// Writes what is written once all passes are done; returns a line on it.
 std::string finish(const RunGroup& group, OpenRun& run, const RunState& last) {
     const std::filesystem::path& folder = run.prepared->folder;
     run.record.files["iterations.csv"] = run.recorder.stamp();
-    for (const Snapshot& snapshot : run.record.snapshots)
-        run.record.files[snapshot.file] = stamp_of(folder / snapshot.file);
+    require_snapshots(run);
+    for (std::size_t i = 0; i < run.snapshots.size(); ++i)
+        run.record.files[run.record.snapshots[i].file] = run.snapshots[i];
     if (!run.probes.empty()) {
         const std::string probes = probes_header + "\n" + run.probes;
         write_text_file(folder / "probes.csv", probes);
@@ -233,9 +252,11 @@ GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options
                 run.recorder.record(state, image);
                 if (group.experiment.decomposition) run.recorded_images.push_back({state.pass, image});
             }
-            if (contains(plan.snapshots, state.pass))
-                write_exr(run.prepared->folder / "snapshots" / snapshot_name(state.pass), image,
-                          image_metadata(run.recorder.identity(), state, group.scene));
+            if (contains(plan.snapshots, state.pass)) {
+                const std::filesystem::path file = run.prepared->folder / "snapshots" / snapshot_name(state.pass);
+                write_exr(file, image, image_metadata(run.recorder.identity(), state, group.scene));
+                run.snapshots.push_back(stamp_of(file));
+            }
         },
         on_pass,
         [&](std::size_t method, std::uint64_t pass, const Integrator& integrator) {

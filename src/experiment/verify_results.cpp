@@ -17,6 +17,7 @@
 #include "experiment/kept_files.h"
 #include "experiment/merged_records.h"
 #include "experiment/reference.h"
+#include "experiment/results_folder.h"
 #include "experiment/run_record.h"
 #include "image/exr.h"
 
@@ -59,6 +60,7 @@ public:
             guarded(folder, [&] { check_run(folder); });
         for (const std::filesystem::path& folder : entries_of(results_ / "ensembles"))
             guarded(folder, [&] { check_ensemble(folder); });
+        guarded(results_, [&] { check_experiment(); });
         guarded(results_, [&] { check_merged(); });
         for (const auto& [name, run] : finished_)
             if (run.reference) guarded(run.reference->path, [&] { check_reference(name, *run.reference); });
@@ -166,6 +168,21 @@ private:
         ++found_.files;
     }
 
+    void check_experiment() {
+        const std::filesystem::path description = results_ / "experiment.json";
+        const std::optional<std::string> experiment = experiment_of_results(results_);
+        if (experiment)
+            ++found_.files;
+        else if (std::filesystem::exists(description))
+            fault(description, "is damaged; remove it, and `photonlab run` writes it again");
+        else
+            fault(description, "is missing; `photonlab run` writes it again");
+        for (const auto& [name, run] : finished_)
+            if (experiment && run.experiment != *experiment)
+                fault(results_ / "runs" / name / "run.json",
+                      fmt::format("is of the experiment {}, not of {}", run.experiment, *experiment));
+    }
+
     /// The merged tables: whether they are what merged.json says, and whether their rows are those of the runs.
     void check_merged() {
         const std::filesystem::path description = results_ / "merged.json";
@@ -174,10 +191,6 @@ private:
         if (!merged && (is_there || !finished_.empty()))
             fault(description, fmt::format("is {}; {}", is_there ? "damaged" : "missing", merge_again));
         if (merged) ++found_.files;
-        for (const auto& [name, run] : finished_)
-            if (merged && run.experiment != merged->experiment)
-                fault(results_ / "runs" / name / "run.json",
-                      fmt::format("is of the experiment {}, not of {}", run.experiment, merged->experiment));
         for (const char* name : {"iterations.csv", "probes.csv"}) {
             std::vector<FileStamp> stamps;
             if (merged && merged->files.contains(name)) stamps = merged->files.at(name);

@@ -20,6 +20,7 @@
 #include <fstream>
 #include <limits>
 #include <set>
+#include <string_view>
 
 #include "core/error.h"
 #include "core/files.h"
@@ -309,7 +310,7 @@ std::string encode_for(const std::filesystem::path& file, const Image& image, co
 }
 
 /// Where the value of a string attribute begins in a file; npos when it has none of the name.
-std::size_t value_position(const std::string& bytes, const std::string& attribute) {
+std::size_t value_position(std::string_view bytes, const std::string& attribute) {
     const std::string start = attribute + '\0' + "string" + '\0';
     const std::size_t found = bytes.find(start);
     return found == std::string::npos ? found : found + start.size() + sizeof(std::uint32_t);  // its length is between
@@ -397,14 +398,23 @@ Metadata read_sealed_metadata(const std::filesystem::path& file) {
 }
 
 void require_seal(const std::filesystem::path& file) {
-    std::string bytes = read_text_file(file, std::numeric_limits<std::uintmax_t>::max());
-    const std::size_t position = value_position(bytes, checksum_attribute);
-    if (position != std::string::npos && position + checksum_digits <= bytes.size()) {
-        const std::string stored = bytes.substr(position, checksum_digits);
-        bytes.replace(position, checksum_digits, checksum_digits, '0');
-        if (stored == hash_text(bytes)) return;
+    require_ordinary_file(file);
+    std::ifstream stream(file, std::ios::binary);
+    std::string piece(std::size_t{1} << 24, '\0');  // the header is in the first
+    std::string stored;
+    RunningHash hash;
+    while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())) || stream.gcount() > 0) {
+        const auto size = static_cast<std::size_t>(stream.gcount());
+        if (stored.empty()) {
+            const std::size_t position = value_position(std::string_view(piece).substr(0, size), checksum_attribute);
+            if (position > size || size - position < checksum_digits) break;
+            stored = piece.substr(position, checksum_digits);
+            piece.replace(position, checksum_digits, checksum_digits, '0');
+        }
+        hash.add(piece.data(), size);
     }
-    throw InputError(file.string(), "is not what was written: its checksum is another");
+    if (stored.empty() || stored != hash.text())
+        throw InputError(file.string(), "is not what was written: its checksum is another");
 }
 
 }  // namespace photonlab

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include <cstring>
+#include <new>
 #include <stdexcept>
-#include <string>
 
 namespace photonlab {
 
@@ -112,12 +112,13 @@ void occluded_callback(const RTCOccludedFunctionNArguments* arguments) {
     }
 }
 
-void fail(void*, RTCError, const char* message) {
-    throw std::runtime_error(std::string("Embree: ") + message);
-}
-
-void require(const void* object) {
-    if (!object) throw std::runtime_error("Embree: out of memory");
+/// Asked after whatever may fail: Embree goes on, and remembers it. An exception thrown from a function of ours that it
+/// would call at once leaves it as it is in the middle of things, and it then ends the program when it is released.
+void require_success(RTCDevice device) {
+    const RTCError error = rtcGetDeviceError(device);
+    if (error == RTC_ERROR_NONE) return;
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    throw std::runtime_error(fmt::format("Embree: error {}", static_cast<int>(error)));
 }
 
 RTCGeometry make_mesh(RTCDevice device, const TriangleMesh& mesh) {
@@ -129,8 +130,7 @@ RTCGeometry make_mesh(RTCDevice device, const TriangleMesh& mesh) {
                                               mesh.positions.size());
     void* triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                               sizeof(mesh.triangles[0]), mesh.triangles.size());
-    require(positions);
-    require(triangles);
+    require_success(device);
     std::memcpy(positions, mesh.positions.data(), position_bytes);
     std::memcpy(triangles, mesh.triangles.data(), triangle_bytes);
     return geometry;
@@ -162,11 +162,9 @@ std::unique_ptr<EmbreeScene, EmbreeSceneDeleter> build_embree_scene(const std::v
     // One thread builds: then no tie between surfaces that coincide can depend on how many there are. Configuration
     // files would be settings from outside. Tracing runs on the caller's threads.
     embree->device = rtcNewDevice("threads=1,start_threads=0,ignore_config_files=1");
-    if (!embree->device)
-        throw std::runtime_error(
-            fmt::format("Embree: no device, error {}", static_cast<int>(rtcGetDeviceError(nullptr))));
-    rtcSetDeviceErrorFunction(embree->device, fail, nullptr);
+    require_success(embree->device);
     embree->scene = rtcNewScene(embree->device);
+    require_success(embree->device);
     rtcSetSceneFlags(embree->scene, RTC_SCENE_FLAG_ROBUST);
 
     for (const Shape& shape : shapes) {
@@ -181,8 +179,10 @@ std::unique_ptr<EmbreeScene, EmbreeSceneDeleter> build_embree_scene(const std::v
         rtcCommitGeometry(geometry);
         rtcAttachGeometryByID(embree->scene, geometry, static_cast<unsigned>(i));
         rtcReleaseGeometry(geometry);
+        require_success(embree->device);
     }
     rtcCommitScene(embree->scene);
+    require_success(embree->device);
     return embree;
 }
 

@@ -19,8 +19,7 @@ protected:
     InterruptedExperiment() {
         write_two_walls(folder_, 16);
         folder_.write("tiny.toml",
-                      "title = \"Does it go on?\"\npasses = 6\nsnapshots = [1, 5]\n" +
-                          every_method_on_two_walls);
+                      "title = \"Does it go on?\"\npasses = 6\nsnapshots = [1, 5]\n" + every_method_on_two_walls);
     }
 
     ExperimentOutcome run(const std::string& results, const ContinuationOptions& options = {},
@@ -110,6 +109,25 @@ TEST_F(InterruptedExperiment, SavesAfterEveryPassThatTakesLongerThanTheSeconds) 
     };
     run("cut", options, "*path*seed-1");
     EXPECT_EQ(times.size(), 4u);  // asked after passes 1 to 5, before it is saved
+}
+
+// It was written before the checkpoint, and nothing would write it again.
+TEST_F(InterruptedExperiment, ASnapshotThatIsGoneMakesItsRunBeginAnew) {
+    run("whole");
+    for (const bool is_removed : {true, false}) {
+        std::filesystem::remove_all(folder_ / "cut");
+        EXPECT_TRUE(run("cut", interrupted_after(4), "*path*seed-1").is_interrupted);
+        const std::filesystem::path file = folder_ / "cut/runs/walls_path_seed-1/snapshots/pass-000001.exr";
+        std::string image = read_text_file(file);
+        image.back() = static_cast<char>(image.back() ^ 1);
+        std::filesystem::remove(file);
+        if (!is_removed) write_text_file(file, image);
+        const std::string message = message_of([&] { run("cut", {}, "*path*seed-1"); });
+        EXPECT_TRUE(message.starts_with(file.string() + ": ")) << message;
+        EXPECT_TRUE(message.ends_with("; its run begins anew the next time")) << message;
+        run("cut");
+        EXPECT_EQ(difference_of_results(folder_ / "whole", folder_ / "cut"), "");
+    }
 }
 
 }  // namespace

@@ -116,7 +116,12 @@ TEST_F(VerifyResults, WhateverBecomesOfRecordsTheyAreMadeWholeAgain) {
         if (!name.ends_with(".csv") && !name.ends_with(".json")) continue;
         if (name.starts_with("runs/") && !name.starts_with("runs/walls_ppm_seed-2/")) continue;
         damage(name, 3, [&](const std::string& how) {
-            run();
+            // Whose a folder is, a program does not decide by itself.
+            const std::string refusal = message_of([&] { run(); });
+            EXPECT_TRUE(refusal.empty() ||
+                        (name == "experiment.json" && refusal.find("or remove this file if") != std::string::npos))
+                << how << refusal;
+            if (!refusal.empty()) return restore();
             EXPECT_EQ(verify_results(results()).faults, std::vector<std::string>{}) << how;
             EXPECT_EQ(repeatable_rows(results() / "iterations.csv"), rows) << how;
             EXPECT_EQ(repeatable_rows(results() / "probes.csv"), probes) << how;

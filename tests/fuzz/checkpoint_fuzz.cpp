@@ -33,7 +33,7 @@ std::string sound_checkpoint(std::string_view state) {
     std::ostringstream stream;
     StateArchive archive(stream);
     for (char c : std::string("photonlab state\n")) archive.exchange(c);
-    std::uint32_t format = 1;
+    std::uint32_t format = checkpoint_format;
     std::string identity = "run";
     archive.exchange(format);
     archive.exchange(identity);

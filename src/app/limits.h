@@ -1,0 +1,23 @@
+// What the system allows a process: memory, threads, open files, the stack. Where that is too little it is said, with
+// what allows no more, before libraries meet it: some of them end the program then.
+
+#pragma once
+
+#include <string>
+
+namespace photonlab {
+
+/// Raises what the process may raise itself: open files, of which runs that are made together hold one each, and the
+/// stack. True when the stack was raised, which threads have only after the program has started once more.
+bool raise_limits();
+
+/// Throws InputError when the stack is too small.
+void require_stack();
+
+/// Starts the threads that OpenMP is going to use. Throws InputError when there cannot be so many.
+void start_threads(int threads);
+
+/// What is said when memory was asked for in vain.
+std::string no_memory_message();
+
+}  // namespace photonlab

@@ -1,0 +1,131 @@
+// What planning costs, in work that can be counted: comparisons, estimates, files that are opened. Time is nobody's
+// business here.
+
+#include "experiment/experiment_plan.h"
+
+#include <gtest/gtest.h>
+#include <sys/inotify.h>
+#include <unistd.h>
+
+#include <array>
+#include <map>
+
+#include "experiment/experiment_runs.h"
+#include "test_folder.h"
+
+namespace photonlab {
+namespace {
+
+/// Counts what happens to files in folders, from its making on.
+class FileEvents {
+public:
+    explicit FileEvents(const std::filesystem::path& folder) : descriptor_(::inotify_init1(IN_NONBLOCK)) {
+        watch(folder);
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+            if (entry.is_directory()) watch(entry.path());
+        counts();  // those folders were opened just now
+    }
+    ~FileEvents() { ::close(descriptor_); }
+    FileEvents(const FileEvents&) = delete;
+    FileEvents& operator=(const FileEvents&) = delete;
+
+    /// By name of the file and what happened, since they were asked for last. Locks, and temporary files that are
+    /// removed again, are left out.
+    std::map<std::string, int> counts() {
+        std::map<std::string, int> found;
+        alignas(inotify_event) std::array<char, 1 << 16> buffer;
+        for (ssize_t size = 0; (size = ::read(descriptor_, buffer.data(), buffer.size())) > 0;)
+            for (ssize_t at = 0; at < size;) {
+                const auto* event = reinterpret_cast<const inotify_event*>(buffer.data() + at);
+                at += static_cast<ssize_t>(sizeof(inotify_event) + event->len);
+                const std::string name = event->len > 0 ? event->name : "";
+                if (name.empty() || (event->mask & IN_ISDIR) || name.ends_with("lock") ||
+                    name.find(".partial-") != std::string::npos)
+                    continue;
+                ++found[name + (event->mask & IN_OPEN ? " opened" : " written")];
+            }
+        return found;
+    }
+
+private:
+    void watch(const std::filesystem::path& folder) {
+        EXPECT_GE(
+            ::inotify_add_watch(descriptor_, folder.c_str(), IN_OPEN | IN_CREATE | IN_MODIFY | IN_MOVED_TO | IN_DELETE),
+            0);
+    }
+
+    int descriptor_;
+};
+
+class ExperimentPlan : public ::testing::Test {
+protected:
+    Experiment experiment(const std::string& seeds, const std::string& more = "") {
+        folder_.write("walls/scene.xml", two_walls_scene);
+        folder_.write("plan.toml", "passes = 2\nthreads = 1\nphotons_per_pass = 100\nseeds = " + seeds + "\n" + more +
+                                       "scenes = [\"walls/scene.xml\"]\n"
+                                       "[[method]]\nintegrator = \"ppm\"\nalpha = [0.5, 0.7]\n"
+                                       "[[method]]\nintegrator = \"photonmapper\"\n"
+                                       "[[method]]\nintegrator = \"path\"\n");
+        return read_experiment(folder_ / "plan.toml");
+    }
+    std::filesystem::path results() { return folder_ / "results"; }
+
+    TestFolder folder_;
+};
+
+TEST_F(ExperimentPlan, RunsAreComparedWithThoseOfTheirSeedAlone) {
+    const Experiment many = experiment("2000");
+    const PreparedExperiment prepared = prepare_experiment(many, results());
+    std::size_t comparisons = 0;
+    const std::vector<RunsTogether> groups =
+        runs_together(prepared.runs, [&](const RunSettings& a, const RunSettings& b) {
+            ++comparisons;
+            return can_run_together(a, b);
+        });
+    EXPECT_EQ(prepared.runs.size(), 8000u);
+    EXPECT_EQ(groups.size(), 4000u);  // of a seed: what takes photons, and the paths
+    EXPECT_LE(comparisons, 4 * prepared.runs.size());
+}
+
+TEST_F(ExperimentPlan, APointIsEstimatedOnceHoweverManySeedsItHas) {
+    const Experiment many = experiment("500");
+    std::size_t estimates = 0;
+    const std::string list =
+        list_runs(many, prepare_experiment(many, results()), [&](const Scene&, const CoarseView&, const RunSettings&) {
+            ++estimates;
+            return TimeEstimate{3600.0, 0.0, 0};
+        });
+    EXPECT_EQ(estimates, 4u);
+    EXPECT_NE(list.find("walls_ppm_alpha-0.5_seed-500 "), std::string::npos);
+    EXPECT_NE(list.find("2000 runs of 2 passes on 1 threads: about "), std::string::npos);
+}
+
+TEST_F(ExperimentPlan, ListingOpensADescriptionARunAndASlotAPoint) {
+    const Experiment some = experiment("18", "decomposition = true\n");
+    run_experiment(some, prepare_experiment(some, results()), results());
+    FileEvents events(results());
+    const PreparedExperiment prepared = prepare_experiment(some, results(), std::nullopt, Check::Sizes);
+    EXPECT_EQ(prepared.faults, std::vector<std::string>{});
+    const auto counts = events.counts();
+    EXPECT_EQ(counts.at("run.json opened"), 18 * 4 * 2);  // asked whether it is an ordinary file, and read
+    EXPECT_FALSE(counts.contains("iterations.csv opened"));
+    for (const auto& [what, count] : counts) {
+        EXPECT_FALSE(what.ends_with("written")) << what;
+        if (what.starts_with("slot-")) {
+            EXPECT_LE(count, 4 * 6) << what;  // points, looks at one header
+        }
+    }
+}
+
+TEST_F(ExperimentPlan, WhereAllIsFinishedNothingIsWritten) {
+    const Experiment some = experiment("18", "decomposition = true\n");
+    run_experiment(some, prepare_experiment(some, results()), results());
+    FileEvents events(results());
+    const ExperimentOutcome outcome = run_experiment(some, prepare_experiment(some, results()), results());
+    EXPECT_EQ(outcome.skipped, 72u);
+    EXPECT_EQ(outcome.merged, 72u);
+    for (const auto& [what, count] : events.counts()) EXPECT_FALSE(what.ends_with("written")) << what << ' ' << count;
+}
+
+}  // namespace
+}  // namespace photonlab
