@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -14,12 +17,11 @@
 namespace photonlab {
 
 Resolution parse_resolution(const std::string& text) {
-    constexpr int largest_side = 65536;
     const std::size_t x = text.find('x');
     if (x != std::string::npos) {
         const std::optional<int> width = number_in<int>(std::string_view(text).substr(0, x));
         const std::optional<int> height = number_in<int>(std::string_view(text).substr(x + 1));
-        const auto fits = [](std::optional<int> side) { return side && *side >= 1 && *side <= largest_side; };
+        const auto fits = [](std::optional<int> side) { return side && *side >= 1 && *side <= largest_image_side; };
         if (fits(width) && fits(height)) return {*width, *height};
     }
     throw InputError(fmt::format("--resolution: expected WIDTHxHEIGHT in pixels, such as 640x480, got \"{}\"", text));
@@ -45,6 +47,23 @@ std::string named_by_option(const std::string& message) {
     for (const SettingField& field : setting_fields())
         if (const std::string named = with(field.name, field.option); !named.empty()) return named;
     return message;
+}
+
+const FileKind* kind_named(const std::string& name) {
+    const auto ends_as = [&](const FileKind& kind) {
+        const std::string_view end = kind.extension;
+        return name.size() >= end.size() && std::equal(end.rbegin(), end.rend(), name.rbegin(), [](char a, char b) {
+                   return a == std::tolower(static_cast<unsigned char>(b));
+               });
+    };
+    const auto* found = std::find_if(std::begin(file_kinds), std::end(file_kinds), ends_as);
+    return found == std::end(file_kinds) ? nullptr : found;
+}
+
+std::string require_folder_name(const std::string& text) {
+    const FileKind* kind = kind_named(text);
+    if (!kind || std::filesystem::is_directory(text)) return require_text(text);
+    return fmt::format("expected the name of a folder, got \"{}\", that of a file of {}", text, kind->name);
 }
 
 void MethodOptions::add_to(CLI::App& command) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "core/error.h"
 #include "experiment/settings_io.h"
@@ -34,6 +35,23 @@ void check_options(const Check& check) {
         throw InputError(named_by_option(error.what()));
     }
 }
+
+/// A kind of file that commands write: what is written is what the name says.
+struct FileKind {
+    std::string_view name;
+    std::string_view extension;  ///< in any case
+    std::string_view option;     ///< of `render`, that writes it
+    std::string_view begins;     ///< how such a file does
+};
+inline constexpr FileKind file_kinds[] = {{"OpenEXR", ".exr", "-o", "\x76\x2f\x31\x01"},
+                                          {"PNG", ".png", "--png", "\x89PNG"},
+                                          {"CSV", ".csv", "--csv", "schema,"}};
+
+/// The kind that a name ends as; nullptr for none.
+const FileKind* kind_named(const std::string& name);
+
+/// A check of CLI11 for a folder that is to be made: it is not called as a file is. Empty where it is sound.
+std::string require_folder_name(const std::string& text);
 
 /// Options of the settings of a method, one for each field, in a group of their own.
 class MethodOptions {

@@ -33,6 +33,11 @@ void make_reference(ReferenceOptions options) {
     const Scene scene = build_scene(load_scene_file(options.settings.scene_file), resolution);
     options.settings.max_depth = options.max_depth.value_or(scene.max_depth);
 
+    const bool adds = options.settings.samples > 0;
+    if (adds && std::filesystem::exists(options.output / "reference.json"))
+        print_message(
+            "{}: adds to the {} samples a half that are there; runs that were judged by them will be made again\n",
+            options.output.string(), read_reference_json(options.output).at("samples_per_half").get<std::uint64_t>());
     listen_for_interruptions();
     options.settings.is_interrupted = is_interrupted;
     std::uint64_t samples_left = 0;
@@ -42,7 +47,6 @@ void make_reference(ReferenceOptions options) {
         progress.show(done, fmt::format("sample {} of {}, both halves; saved about every {:.0f} s", done, total,
                                         options.settings.seconds_between_saves));
     };
-    const bool adds = options.settings.samples > 0;
     const Json json = adds ? add_reference_samples(scene, options.settings, options.output, show)
                            : compare_reference_with_photons(scene, options.settings, options.output);
     progress.clear();
@@ -72,29 +76,35 @@ void add_reference_command(CLI::App& app) {
     settings.threads = hardware_threads();
     CLI::App* command = app.add_subcommand("reference", "Add samples to a reference of two halves");
     command->add_option("SCENE", settings.scene_file, "scene file (Mitsuba XML)")->required();
-    command->add_option("-o", options->output, "folder of the reference")->required();
-    command->add_option("--integrator", settings.integrator,
-                        "path, or ppm where paths from the camera do not find the light [path]");
-    command->add_option("--photons", settings.photons_per_pass, "ppm: paths emitted a pass [1000000]");
+    command->add_option("-o", options->output, "folder of the reference")->required()->check(require_folder_name);
+    command->add_option(
+        "--integrator", settings.integrator,
+        fmt::format("path, or ppm where paths from the camera do not find the light [{}]", settings.integrator));
+    command->add_option("--photons", settings.photons_per_pass,
+                        fmt::format("ppm: paths emitted a pass [{}]", settings.photons_per_pass));
     command->add_option("--alpha", settings.alpha, "ppm: of the schedule of Knaus and Zwicker [2/3]");
     command
         ->add_option(
             "--samples", settings.samples,
-            "to add to each half: paths a sample position, or passes of ppm; 0 only compares what is there with "
-            "the light that photons find [1024]")
+            fmt::format(
+                "to add to each half: paths a sample position, or passes of ppm; 0 only compares what is there with "
+                "the light that photons find [{}]",
+                settings.samples))
         ->check(CLI::Range(0u, 0x7fffffffu));
     command->add_option("--resolution", options->resolution, "WIDTHxHEIGHT in place of the scene file's");
-    command->add_option("--samples-per-pixel", settings.samples_per_pixel, "sample positions, a perfect square [1]");
+    command->add_option("--samples-per-pixel", settings.samples_per_pixel,
+                        fmt::format("sample positions, a perfect square [{}]", settings.samples_per_pixel));
     command->add_option("--max-depth", options->max_depth,
                         "edges from camera to light, -1 is unlimited [the scene file's]");
-    command->add_option("--seed", settings.seed, "of all random numbers [1]")->check(require_whole_number);
+    command->add_option("--seed", settings.seed, fmt::format("of all random numbers [{}]", settings.seed))
+        ->check(require_whole_number);
     command->add_option("--threads", settings.threads, "threads to use [all]; the image does not depend on it")
         ->check(CLI::Range(1, 1024));
     command->add_flag("--picture-only", settings.picture_only,
                       "store the picture without its layers, a third of the size; nothing can be added to it");
     command->footer(
         "Calling it again adds to what is there. Example:\n  photonlab reference scenes/cornell-box/scene.xml -o "
-        "reference/cornell-box --resolution 128x128 --samples 4096");
+        "results/reference/cornell-box --resolution 128x128 --samples 4096");
     command->callback([options] { make_reference(*options); });
 }
 

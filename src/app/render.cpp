@@ -52,7 +52,7 @@ struct RenderOptions {
     std::string png;
     std::vector<std::uint64_t> snapshots;
     std::string checkpoint;
-    double checkpoint_seconds = 30.0;
+    double checkpoint_seconds = default_seconds_between_saves;
     bool resume = false;
 };
 
@@ -113,22 +113,39 @@ void require_consistent(const RenderOptions& options) {
                          "is there already: --resume goes on from it; to begin anew, remove it or give another file");
 }
 
-/// What is written must not be what is read, nor written twice; nor replace a file of another kind, such as a mesh of
-/// the scene.
-void require_different_files(const RenderOptions& options, const std::vector<std::uint64_t>& snapshots) {
-    struct Written {
-        std::string option;
-        std::filesystem::path file;
-        std::string begins;  // how a file of this kind does
-    };
-    const std::string exr = "\x76\x2f\x31\x01";
-    std::vector<Written> written{{"-o", options.output, exr}};
-    for (const std::uint64_t pass : snapshots)
-        written.push_back({"--snapshots", snapshot_file(options.output, pass), exr});
-    if (!options.csv.empty()) written.push_back({"--csv", options.csv, "schema,"});
-    if (!options.png.empty()) written.push_back({"--png", options.png, "\x89PNG"});
-    if (!options.checkpoint.empty()) written.push_back({"--checkpoint", options.checkpoint, ""});
+/// A file that is to be written.
+struct WrittenFile {
+    std::string option;
+    std::filesystem::path file;
+    const FileKind* kind;  ///< nullptr: a checkpoint
+};
 
+std::vector<WrittenFile> written_files(const RenderOptions& options, const std::vector<std::uint64_t>& snapshots) {
+    const auto& [exr, png, csv] = file_kinds;
+    std::vector<WrittenFile> written{{"-o", options.output, &exr}};
+    for (const std::uint64_t pass : snapshots)
+        written.push_back({"--snapshots", snapshot_file(options.output, pass), &exr});
+    if (!options.csv.empty()) written.push_back({"--csv", options.csv, &csv});
+    if (!options.png.empty()) written.push_back({"--png", options.png, &png});
+    if (!options.checkpoint.empty()) written.push_back({"--checkpoint", options.checkpoint, nullptr});
+    return written;
+}
+
+/// What is written must be what its name says. A device is refused as such, later.
+void require_name_of_kind(const WrittenFile& written) {
+    const FileKind* named = kind_named(written.file.string());
+    if (named == written.kind ||
+        (std::filesystem::exists(written.file) && !std::filesystem::is_regular_file(written.file)))
+        return;
+    std::string message = written.kind ? fmt::format("{}: writes {}: expected a name that ends in {}", written.option,
+                                                     written.kind->name, written.kind->extension)
+                                       : written.option + ": writes the state of the render: expected another name";
+    if (named) message += fmt::format("; {} writes {}", named->option, named->name);
+    throw InputError(written.file.string(), message);
+}
+
+/// Nor must it be what is read, or written twice; nor replace a file of another kind, such as a mesh of the scene.
+void require_sound_outputs(const RenderOptions& options, const std::vector<std::uint64_t>& snapshots) {
     constexpr const char* input = "";  // in place of an option
     std::map<std::filesystem::path, std::string> taken;
     const auto take = [&](const std::filesystem::path& file, const std::string& by) {
@@ -137,18 +154,21 @@ void require_different_files(const RenderOptions& options, const std::vector<std
     take(options.scene, input);
     if (const std::filesystem::path reference = options.reference; !reference.empty())
         for (const auto& file : {reference, reference / "half_a.exr", reference / "half_b.exr"}) take(file, input);
-    for (const auto& [option, file, begins] : written) {
+    for (const WrittenFile& written : written_files(options, snapshots)) {
+        const auto& [option, file, kind] = written;
         if (const auto [at, is_new] = take(file, option); !is_new)
             throw InputError(file.string(),
                              option + ": is " +
                                  (at->second == input ? "read from here" : "written by " + at->second + " already") +
                                  "; choose another file");
-        if (!std::filesystem::is_regular_file(file) || begins.empty()) continue;
-        std::string found(begins.size(), '\0');
-        std::ifstream stream(file, std::ios::binary);
-        stream.read(found.data(), static_cast<std::streamsize>(found.size()));
-        if (stream.gcount() > 0 && found != begins)
-            throw InputError(file.string(), option + ": is there already, and is a file of another kind");
+        if (kind && std::filesystem::is_regular_file(file)) {
+            std::string found(kind->begins.size(), '\0');
+            std::ifstream stream(file, std::ios::binary);
+            stream.read(found.data(), static_cast<std::streamsize>(found.size()));
+            if (stream.gcount() > 0 && found != kind->begins)
+                throw InputError(file.string(), option + ": is there already, and is a file of another kind");
+        }
+        require_name_of_kind(written);
     }
 }
 
@@ -174,7 +194,7 @@ void render(const RenderOptions& options) {
             load_reference(options.reference, ReferenceSubject{scene.hash, scene.camera.width, scene.camera.height,
                                                                options.samples_per_pixel, settings.method.max_depth});
 
-    require_different_files(options, snapshots);
+    require_sound_outputs(options, snapshots);
     // Before hours are spent: everything that is to be written can be.
     require_writable(options.output);
     for (const std::string& file : {options.csv, options.png, options.checkpoint})
@@ -288,12 +308,15 @@ void add_render_command(CLI::App& app) {
     command->add_option("SCENE", options->scene, "scene file (Mitsuba XML)")->required();
     command->add_option("-o", options->output, "image to write: linear float RGB and layers, OpenEXR")->required();
     options->method.add_to(*command);
-    command->add_option("--passes", options->passes, "number of passes [32]")->check(CLI::Range(1u, 0xffffffffu));
-    command->add_option("--seed", options->seed, "of all random numbers [1]")->check(require_whole_number);
+    command->add_option("--passes", options->passes, fmt::format("number of passes [{}]", options->passes))
+        ->check(CLI::Range(1u, 0xffffffffu));
+    command->add_option("--seed", options->seed, fmt::format("of all random numbers [{}]", options->seed))
+        ->check(require_whole_number);
     command->add_option("--threads", options->threads, "threads to use [all]; the image does not depend on it")
         ->check(CLI::Range(1, 1024));
     command->add_option("--resolution", options->resolution, "WIDTHxHEIGHT in place of the scene file's");
-    command->add_option("--samples-per-pixel", options->samples_per_pixel, "sample positions, a perfect square [1]");
+    command->add_option("--samples-per-pixel", options->samples_per_pixel,
+                        fmt::format("sample positions, a perfect square [{}]", options->samples_per_pixel));
     command->add_option("--reference", options->reference,
                         "folder of a reference, or an EXR: errors are taken against it");
     command->add_option("--csv", options->csv, "records to write, at passes 0, 1, 2, 4, ... and the last");
@@ -304,7 +327,8 @@ void add_render_command(CLI::App& app) {
                         "file to keep the state in while rendering, so that a kill costs half a minute at most");
     command
         ->add_option("--checkpoint-seconds", options->checkpoint_seconds,
-                     "work that a kill may cost, or one pass if that takes longer [30]")
+                     fmt::format("work that a kill may cost, or one pass if that takes longer [{:g}]",
+                                 options->checkpoint_seconds))
         ->check(require_seconds);
     command->add_flag("--resume", options->resume, "go on from the checkpoint, if it is there, to the same bits");
     command->footer(

@@ -63,14 +63,19 @@ void add_run_command(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("run", "Run an experiment; finished runs are skipped, interrupted ones continued");
     command->add_option("EXPERIMENT", options->experiment, "experiment file (TOML)")->required();
-    command->add_option("-o", options->output, "folder for results [results/EXPERIMENT]");
+    command->add_option("-o", options->output, "folder for results [results/EXPERIMENT]")->check(require_folder_name);
     command->add_flag("--list", options->list, "print the runs with an estimate of time and memory, and run nothing");
-    command->add_option("--only", options->only, "only runs of this name, or that match this shell pattern");
-    command->add_flag("--smoke", options->smoke,
-                      "everything in small: at most 4 passes, 2000 photons a pass, 2 seeds; into a folder of its own");
+    command->add_option("--only", options->only, "only runs of this name, or that match this shell pattern")
+        ->check(require_text);
+    const SmokeLimits smoke;
+    command->add_flag(
+        "--smoke", options->smoke,
+        fmt::format("everything in small: at most {} passes, {} photons a pass, {} seeds; into a folder of its own",
+                    smoke.passes, smoke.photons_per_pass, smoke.seeds));
     command
         ->add_option("--checkpoint-seconds", options->continuation.seconds_between_saves,
-                     "work that a kill may cost, or one pass if that takes longer [30]")
+                     fmt::format("work that a kill may cost, or one pass if that takes longer [{:g}]",
+                                 options->continuation.seconds_between_saves))
         ->check(require_seconds);
     command->add_flag("--fresh", options->continuation.fresh,
                       "begin unfinished runs anew; their checkpoints are set aside as checkpoint.old");

@@ -21,7 +21,6 @@ namespace photonlab {
 namespace {
 
 constexpr std::int64_t most_passes = 0xffffffff;  // a random stream's pass has 32 bits
-constexpr std::int64_t largest_side = 65536;
 constexpr std::int64_t most_threads = 1024;
 constexpr std::size_t most_runs = 100'000;
 constexpr std::size_t longest_file_name = 255;                    // bytes, on the file systems of Linux
@@ -133,7 +132,7 @@ private:
     }
 
     Resolution resolution(const toml::node& node) const {
-        const std::vector<std::uint64_t> sides = integers(node, "resolution", 1, largest_side);
+        const std::vector<std::uint64_t> sides = integers(node, "resolution", 1, largest_image_side);
         if (sides.size() != 2) throw InputError(place(node), "resolution: expected [width, height]");
         return {static_cast<int>(sides[0]), static_cast<int>(sides[1])};
     }
@@ -265,7 +264,7 @@ private:
             const std::string written(name.str());
             if (written != file_safe(written))
                 throw InputError(place(value), fmt::format("{}: \"{}\" is no name for a file", key, written));
-            const std::vector<std::uint64_t> numbers = integers(value, written, 0, largest_side);
+            const std::vector<std::uint64_t> numbers = integers(value, written, 0, largest_image_side);
             if (numbers.size() != count)
                 throw InputError(place(value), fmt::format("{}: expected {}", written, expected));
             take(written, std::vector<int>(numbers.begin(), numbers.end()), place(value));

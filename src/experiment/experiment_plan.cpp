@@ -107,7 +107,8 @@ public:
 
     void add(const ExperimentRun& run) {
         const Point& point = point_of(run);
-        PreparedRun ready{&run, point.settings, "", point.key, results_ / "runs" / run.name, false};
+        PreparedRun ready{&run, point.settings, "", point.key, point.reference_key,
+                          results_ / "runs" / run.name, false};
         ready.settings.seed = run.seed;
         ready.key = hash_text(fmt::format("{} {} {}", point.key, run.seed, point.snapshots));
         ready.finished = is_as_it_finished(ready) && (!point.ensemble || point.ensemble->contains(run.seed));
@@ -124,6 +125,7 @@ private:
     struct Point {
         RunSettings settings;
         std::string key;
+        std::string reference_key;
         std::string snapshots;
         std::optional<Ensemble> ensemble;
     };
@@ -164,11 +166,11 @@ private:
         point.settings.threads = experiment_.threads;
         std::set_union(run.plan.recorded.begin(), run.plan.recorded.end(), run.plan.snapshots.begin(),
                        run.plan.snapshots.end(), std::back_inserter(point.settings.estimated));
-        point.key = point_key(experiment_, run, point.settings, scene,
-                              reference_key_of(run, scene, point.settings.method.max_depth));
+        point.reference_key = reference_key_of(run, scene, point.settings.method.max_depth);
+        point.key = point_key(experiment_, run, point.settings, scene, point.reference_key);
         point.snapshots = Json(run.plan.snapshots).dump();
         if (experiment_.decomposition)
-            point.ensemble = ensemble_of(experiment_, {&run, point.settings, "", point.key, {}, false}, results_);
+            point.ensemble = ensemble_of(experiment_, {&run, point.settings, "", point.key, "", {}, false}, results_);
         return point;
     }
 

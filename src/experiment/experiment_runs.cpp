@@ -16,6 +16,7 @@
 #include "experiment/progress.h"
 #include "experiment/reference.h"
 #include "experiment/results_folder.h"
+#include "experiment/run_record.h"
 #include "transport/plain_images.h"
 
 namespace photonlab {
@@ -64,6 +65,20 @@ std::uint64_t bytes_on_disk(const Experiment& experiment, const PreparedExperime
         largest_group = std::max(largest_group, checkpoints);
     }
     return bytes + largest_group;
+}
+
+/// Says of finished runs that were judged by a reference as it was before why they are made again.
+void tell_changed_references(const Experiment& experiment, const PreparedExperiment& prepared) {
+    std::map<std::filesystem::path, std::size_t> runs;
+    for (const PreparedRun& ready : prepared.runs) {
+        if (ready.finished || ready.reference_key.empty()) continue;
+        const auto made = read_finished_run(ready.folder);
+        if (made && made->reference && made->reference->key != ready.reference_key)
+            ++runs[*experiment.scenes[ready.run->scene].reference];
+    }
+    for (const auto& [reference, count] : runs)
+        print_message("{}: has changed since {} finished runs were judged by it; they are made again\n",
+                      reference.string(), count);
 }
 
 /// The hit points and the reference of the runs at hand, kept as long as the next ones want the same.
@@ -241,6 +256,7 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
     }
     require_space(results, bytes_on_disk(experiment, prepared, groups),
                   "what this experiment still writes (snapshots, sums over seeds, checkpoints)");
+    tell_changed_references(experiment, prepared);
 
     ExperimentOutcome outcome;
     outcome.records = results / "iterations.csv";

@@ -19,7 +19,6 @@ namespace photonlab {
 namespace {
 
 constexpr std::uint64_t passes = 32;
-constexpr double fewest_standard_errors = 4.0;
 constexpr double fewest_photons = 100.0;  // below which their number says nothing for sure
 constexpr double largest_change = 0.25;   // of the mean, up to which what is left of the bias follows from it
 constexpr double few_pixels = 10.0;       // sharing the noise: it is that of rare bright paths
@@ -114,7 +113,7 @@ constexpr std::size_t lights = std::size(compared_lights);
 /// their noise. Of fewer hit points larger footprints are smaller shares.
 double outer_footprints(std::size_t hit_points) {
     constexpr double many = 16384.0;
-    return 0.5 * std::pow(std::min(1.0, static_cast<double>(hit_points) / many), 0.25);
+    return largest_check_footprints * std::pow(std::min(1.0, static_cast<double>(hit_points) / many), 0.25);
 }
 
 /// A sixteenth of the reference's paths, but enough to tell a few hundredths of the light; and not so many that the

@@ -34,6 +34,9 @@
 
 namespace photonlab {
 
+inline constexpr double largest_check_footprints = 0.5;  ///< r; less for few hit points
+inline constexpr double fewest_standard_errors = 4.0;    ///< of a dispute
+
 /// What is compared.
 enum class ComparedLight { Gathered, DirectAndGathered };
 inline constexpr ComparedLight compared_lights[] = {ComparedLight::Gathered, ComparedLight::DirectAndGathered};

@@ -41,8 +41,6 @@ constexpr HalfPurposes half_purposes[] = {
     {halves[0], RandomPurpose::ReferenceHalfA, RandomPurpose::ReferencePhotonsA, RandomPurpose::ReferenceDirectA},
     {halves[1], RandomPurpose::ReferenceHalfB, RandomPurpose::ReferencePhotonsB, RandomPurpose::ReferenceDirectB}};
 
-constexpr double ppm_footprints = 1.5;  // below what runs begin with, so that the bias is less than theirs
-
 /// How the samples are made, in words that tell whether others can be joined to them.
 std::string describe_method(const MethodSettings& method) {
     if (method.integrator == "path") return "path";
@@ -58,7 +56,7 @@ MethodSettings method_of(const ReferenceSettings& settings) {
     method.integrator = settings.integrator;
     method.schedule = ScheduleName::KnausZwicker;
     method.alpha = settings.alpha;
-    method.footprints = ppm_footprints;
+    method.footprints = reference_footprints;
     method.photons_per_pass = settings.photons_per_pass;
     method.max_depth = settings.max_depth;
     require_valid(method);

@@ -19,6 +19,7 @@
 #include <string>
 #include <string_view>
 
+#include "experiment/checkpoint.h"
 #include "experiment/experiment_file.h"
 #include "experiment/reference.h"
 #include "experiment/settings_io.h"
@@ -26,6 +27,9 @@
 #include "scene/scene.h"
 
 namespace photonlab {
+
+/// Initial radius of references made by ppm: below what runs begin with, so that the bias is less than theirs.
+inline constexpr double reference_footprints = 1.5;
 
 struct ReferenceSettings {
     std::filesystem::path scene_file;
@@ -37,7 +41,7 @@ struct ReferenceSettings {
     int max_depth = -1;
     std::uint64_t seed = 1;  ///< must be the one that is there already, when adding
     int threads = 1;
-    double seconds_between_saves = 30.0;
+    double seconds_between_saves = default_seconds_between_saves;
     bool picture_only = false;  ///< store the sum of the layers alone, a third of the size; nothing can be added to it
     std::function<bool()> is_interrupted = [] { return false; };  ///< true: end, and save, with fewer samples
 };

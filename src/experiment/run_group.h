@@ -29,12 +29,13 @@ struct PreparedRun {
     RunSettings settings;
     std::string key;
     std::string point_key;  ///< the same without the seed
+    std::string reference_key;  ///< empty without a reference
     std::filesystem::path folder;
     bool finished = false;  ///< with this key
 };
 
 struct ContinuationOptions {
-    double seconds_between_saves = 30.0;
+    double seconds_between_saves = default_seconds_between_saves;
     bool fresh = false;  ///< begin anew; checkpoints that are there are set aside
     /// Asked after every pass: true ends it there, with a checkpoint.
     std::function<bool()> is_interrupted = [] { return false; };

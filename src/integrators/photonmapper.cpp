@@ -27,7 +27,7 @@ public:
         global_.k = static_cast<std::size_t>(settings.k);
         caustic_.k = static_cast<std::size_t>(settings.caustic_k);
         const Scene& scene = context.scene;
-        global_.max_radius = chosen_radius(settings.max_radius, default_share_of_scene * scene.bounding_radius, scene);
+        global_.max_radius = chosen_radius(settings.max_radius, default_max_radius_share * scene.bounding_radius, scene);
         caustic_.max_radius =
             chosen_radius(settings.caustic_max_radius, default_caustic_share * global_.max_radius, scene);
         const std::size_t points = context.hit_points.points.size();
@@ -97,9 +97,6 @@ public:
     }
 
 private:
-    /// Mitsuba 0.6's default for its global map, in shares of the scene's bounding radius.
-    static constexpr double default_share_of_scene = 0.05;
-
     /// Adds what the photons of one map bring to every hit point.
     void gather(const PhotonMap& map, Search& search) {
         if (map.size() == 0) return;

@@ -61,12 +61,12 @@ void require_valid(const MethodSettings& settings) {
     };
     find_integrator_kind(settings.integrator);
     require_alpha(settings.alpha);
-    require(settings.k >= 2, "k: expected at least 2 photons, got " + std::to_string(settings.k));
+    require(settings.k >= fewest_nearest, "k: expected at least 2 photons, got " + std::to_string(settings.k));
     require(is_length(settings.radius), "radius: expected \"auto\" or a length above 0 in scene units");
     require(std::isfinite(settings.footprints) && settings.footprints > 0.0,
             fmt::format("footprints: expected a number above 0, got {}", settings.footprints));
     require(is_length(settings.max_radius), "max_radius: expected \"auto\" or a length above 0 in scene units");
-    require(settings.caustic_k >= 2,
+    require(settings.caustic_k >= fewest_nearest,
             "caustic_k: expected at least 2 photons, got " + std::to_string(settings.caustic_k));
     require(is_length(settings.caustic_radius), "caustic_radius: expected \"auto\" or a length above 0 in scene units");
     require(is_length(settings.caustic_max_radius),
@@ -77,8 +77,9 @@ void require_valid(const MethodSettings& settings) {
             "max_depth: expected -1 (unlimited) or at least 1, got " + std::to_string(settings.max_depth));
     require(std::isfinite(settings.eps) && settings.eps >= 0.0,
             fmt::format("eps: expected at least 0, which is exact, got {}", settings.eps));
-    require(settings.branch_cutoff >= 1e-12 && settings.branch_cutoff <= 1.0,
-            fmt::format("branch_cutoff: expected a throughput from 1e-12 to 1, got {}", settings.branch_cutoff));
+    require(settings.branch_cutoff >= smallest_branch_cutoff && settings.branch_cutoff <= largest_branch_cutoff,
+            fmt::format("branch_cutoff: expected a throughput from {:g} to {:g}, got {}", smallest_branch_cutoff,
+                        largest_branch_cutoff, settings.branch_cutoff));
     constexpr std::uint64_t most_photons = std::uint64_t{1} << 32;
     require(settings.photons_per_pass >= 1 && settings.photons_per_pass <= most_photons,
             fmt::format("photons_per_pass: expected from 1 to {}, got {}", most_photons, settings.photons_per_pass));

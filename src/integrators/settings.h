@@ -38,8 +38,16 @@ constexpr const auto& choice_names(DirectMode) {
     return direct_mode_names;
 }
 
+/// Largest radius of mode `nearest` in shares of the scene's bounding radius, unless given: Mitsuba 0.6's default for its
+/// global map.
+inline constexpr double default_max_radius_share = 0.05;
+
 /// Largest radius of the caustic map in shares of the global map's, unless given: the ratio of Mitsuba 0.6's defaults.
 inline constexpr double default_caustic_share = 0.25;
+
+inline constexpr double smallest_branch_cutoff = 1e-12;
+inline constexpr double largest_branch_cutoff = 1.0;
+inline constexpr int fewest_nearest = 2;  ///< the k-th photon sets the radius and carries no flux
 
 struct MethodSettings {
     std::string integrator = "ppm";                   ///< a name of integrator_kinds()

@@ -61,6 +61,8 @@ struct PointLightDescription {
     std::string place;
 };
 
+inline constexpr int largest_image_side = 65536;  ///< pixels, of an image that is rendered
+
 /// A pinhole camera. Camera space is Mitsuba's: z forward, y up, x to the left of the image.
 struct CameraDescription {
     Matrix to_world;      ///< camera space to world, no shear; Imath's row-vector convention

@@ -272,9 +272,9 @@ private:
         Properties properties(element);
         const auto size = [&](const std::string& name, int missing) {
             const long value = properties.integer(name).value_or(missing);
-            if (value < 1 || value > 16384)
+            if (value < 1 || value > largest_image_side)
                 throw InputError(properties.place_of(name),
-                                 fmt::format("{}: expected 1 to 16384 pixels, got {}", name, value));
+                                 fmt::format("{}: expected 1 to {} pixels, got {}", name, largest_image_side, value));
             return static_cast<int>(value);
         };
         scene_.camera.width = size("width", type == "mfilm" ? 1 : 768);

@@ -141,7 +141,7 @@ private:
             const Vector direction = surface.frame.to_world(way.incoming);
             if (!sides_agree(surface, direction)) continue;  // absorbed, as for every path here
             const Color throughput = branch.throughput * way.weight;
-            if (max_channel(throughput) < smallest_weight_ || branch.edges == edge_cap) {
+            if (max_channel(throughput) < smallest_weight_ || branch.edges == largest_path_edges) {
                 tile.weight_cut += mean_channel(ColorD(throughput)) * static_cast<double>(share_);
                 continue;
             }

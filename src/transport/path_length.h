@@ -13,7 +13,7 @@ inline bool depth_allows(int max_depth, std::uint32_t edges) {
 }
 
 /// Ends light that is trapped between mirrors or in glass; what it cuts is counted.
-inline constexpr std::uint32_t edge_cap = 10'000;
+inline constexpr std::uint32_t largest_path_edges = 10'000;
 
 /// The largest probability to survive roulette, so that a path among white surfaces ends, too.
 inline constexpr float highest_survival = 0.99f;

@@ -36,7 +36,7 @@ void trace_path(const Scene& scene, const PhotonSettings& settings, RandomStream
     bool only_specular = true;
     // The camera's side of a path has at least one edge, so a photon may have at most max_depth - 1.
     const std::uint32_t edge_limit =
-        settings.max_depth < 0 ? edge_cap : static_cast<std::uint32_t>(std::max(0, settings.max_depth - 1));
+        settings.max_depth < 0 ? largest_path_edges : static_cast<std::uint32_t>(std::max(0, settings.max_depth - 1));
     for (std::uint32_t edges = 1; edges <= edge_limit; ++edges) {
         const std::optional<Hit> hit = intersect(scene, ray);
         if (!hit) return;

@@ -34,7 +34,7 @@ static_assert(sizeof(Photon) == 32);
 struct PhotonPass {
     std::vector<Photon> photons;  ///< in path order
     std::uint64_t paths_emitted = 0;
-    std::uint64_t paths_cut = 0;  ///< ended by the cap of 10,000 edges
+    std::uint64_t paths_cut = 0;  ///< ended at largest_path_edges
     double power_cut = 0.0;       ///< what those still carried: mean channel, relative, summed over paths
     std::uint64_t nonfinite = 0;  ///< photons refused for a non-finite position, direction or power
 };

@@ -1,0 +1,330 @@
+// What README.md and --help state, compared with the code: names, defaults, limits and constants. A sentence that holds
+// a number is written here with the constant in its place, so that neither can change alone.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "app/interruption.h"
+#include "experiment/checkpoint.h"
+#include "experiment/ensemble.h"
+#include "experiment/experiment_file.h"
+#include "experiment/recorder.h"
+#include "experiment/reference_check.h"
+#include "experiment/reference_store.h"
+#include "experiment/settings_io.h"
+#include "image/metrics.h"
+#include "integrators/density_estimate.h"
+#include "integrators/registry.h"
+#include "scene/narrow_gaps.h"
+#include "tests/app/program.h"
+
+namespace photonlab {
+namespace {
+
+using Names = std::set<std::string>;
+using Row = std::vector<std::string>;
+
+const std::filesystem::path source = PHOTONLAB_SOURCE_DIR;
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    return lines;
+}
+
+/// The cells of a line of a Markdown table, without the blanks around them.
+Row cells_of(std::string line) {
+    const std::string bar = "\x01";
+    for (std::size_t at; (at = line.find("\\|")) != std::string::npos;) line.replace(at, 2, bar);
+    Row cells;
+    std::istringstream stream(line.substr(1));
+    for (std::string cell; std::getline(stream, cell, '|');)
+        cells.push_back(std::regex_replace(cell, std::regex("^ +| +$"), ""));
+    return cells;
+}
+
+/// The rows of the table whose header begins with this cell.
+std::vector<Row> table(const std::string& text, const std::string& header) {
+    std::vector<Row> rows;
+    bool is_in_it = false;
+    for (const std::string& line : lines_of(text)) {
+        is_in_it = line.rfind(is_in_it ? "|" : "| " + header + " |", 0) == 0;
+        if (is_in_it) rows.push_back(cells_of(line));
+    }
+    if (rows.size() > 2) rows.erase(rows.begin(), rows.begin() + 2);
+    return rows;
+}
+
+/// What stands in `back quotes`.
+std::vector<std::string> quoted(const std::string& text) {
+    std::vector<std::string> found;
+    const std::regex pattern("`([^`]+)`");
+    for (std::sregex_iterator at(text.begin(), text.end(), pattern), end; at != end; ++at) found.push_back((*at)[1]);
+    return found;
+}
+
+std::vector<std::string> split(const std::string& text, const std::string& separator) {
+    std::vector<std::string> parts;
+    std::size_t begin = 0;
+    for (std::size_t at; (at = text.find(separator, begin)) != std::string::npos; begin = at + separator.size())
+        parts.push_back(text.substr(begin, at - begin));
+    parts.push_back(text.substr(begin));
+    return parts;
+}
+
+Names folders_in(const std::filesystem::path& folder) {
+    Names names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        if (entry.is_directory()) names.insert(entry.path().filename().string());
+    return names;
+}
+
+class Stated : public ::testing::Test {
+protected:
+    std::string help_of(const std::vector<std::string>& command) const {
+        std::vector<std::string> words = command;
+        words.push_back("--help");
+        Program program(words, folder_ / "messages");
+        EXPECT_EQ(program.wait(), 0);
+        return program.messages();
+    }
+
+    std::string refusal_of(const std::string& scene) const {
+        Program program({"info", folder_.write("scene.xml", scene).string()}, folder_ / "messages");
+        EXPECT_EQ(program.wait(), 2);
+        return program.messages();
+    }
+
+    void expect_stated(const std::string& sentence) const {
+        EXPECT_NE(readme_.find(sentence), std::string::npos) << "README.md does not say: " << sentence;
+    }
+
+    const TestFolder folder_;
+    const std::string readme_ = read_text_file(source / "README.md");
+};
+
+TEST_F(Stated, CommandsAreThoseOfTheProgram) {
+    Names in_readme;
+    for (const Row& row : table(readme_, "command")) in_readme.insert(split(quoted(row.at(0)).at(0), " ").at(1));
+    Names in_help;
+    bool is_in_list = false;
+    for (const std::string& line : lines_of(help_of({}))) {
+        if (is_in_list && line.rfind("  ", 0) != 0) break;
+        if (is_in_list) in_help.insert(split(line.substr(2), " ").at(0));
+        if (line.rfind("Subcommands:", 0) == 0) is_in_list = true;
+    }
+    EXPECT_FALSE(in_help.empty());
+    EXPECT_EQ(in_readme, in_help);
+}
+
+TEST_F(Stated, SettingsAndTheirDefaultsAreThoseOfTheTable) {
+    std::map<std::string, std::string> stated;  // default by name
+    for (const Row& row : table(readme_, "setting")) {
+        const std::vector<std::string> names = quoted(row.at(0));
+        const std::vector<std::string> defaults = split(row.at(2), ", ");
+        ASSERT_EQ(names.size(), defaults.size()) << row.at(0);
+        for (std::size_t i = 0; i < names.size(); ++i)
+            stated[names[i]] = std::regex_replace(defaults[i], std::regex("`"), "");
+    }
+    Names of_methods{"integrator"};
+    for (const Row& row : table(readme_, "integrator"))
+        for (const std::string& name : quoted(row.at(2)))
+            if (find_setting_field(name)) of_methods.insert(name);
+    const MethodSettings defaults;
+    for (const SettingField& field : setting_fields()) {
+        const std::string name(field.name);
+        const auto at = stated.find(name);
+        if (at == stated.end()) {
+            EXPECT_TRUE(of_methods.contains(name)) << name;
+            continue;
+        }
+        const std::string expected = plain_text(field.write(defaults));
+        if (name == "max_depth")
+            EXPECT_EQ(at->second, "the scene's");
+        else if (expected.find_first_not_of("0123456789.e+-") == std::string::npos)
+            EXPECT_EQ(std::stod(at->second), std::stod(expected)) << name;
+        else
+            EXPECT_EQ(at->second, expected) << name;
+        stated.erase(at);
+    }
+    EXPECT_TRUE(stated.empty()) << "no setting: " << stated.begin()->first;
+    expect_stated(fmt::format("`alpha` ({}), `schedule`", defaults.alpha));
+}
+
+TEST_F(Stated, IntegratorsAndChoicesAreThoseOfTheRegistry) {
+    Names integrators;
+    for (const Row& row : table(readme_, "integrator")) integrators.insert(quoted(row.at(0)).at(0));
+    Names known;
+    for (const IntegratorKind& kind : integrator_kinds()) known.insert(std::string(kind.name));
+    EXPECT_EQ(integrators, known);
+    const auto choices = [](const auto& names, const std::string& separator, const std::string& last) {
+        std::string text;
+        for (std::size_t i = 0; i < names.size(); ++i)
+            text += (i == 0 ? "" : i + 1 == names.size() ? last : separator) + "`" + std::string(names[i].name) + "`";
+        return text;
+    };
+    expect_stated("| " + choices(kernel_names, ", ", " or ") + " |");
+    expect_stated("`schedule` (" + choices(schedule_names, ", ", " or ") + ")");
+    for (const auto& mode : gather_mode_names) expect_stated(fmt::format("`{}` (", mode.name));
+    for (const auto& direct : direct_mode_names) expect_stated(fmt::format("`direct = \"{}\"`", direct.name));
+}
+
+TEST_F(Stated, NumbersInTheMeaningOfSettingsAreTheConstants) {
+    const auto meaning = [](std::string_view name) { return std::string(find_setting_field(name)->meaning); };
+    const auto expect_in = [](const std::string& text, const std::string& part) {
+        EXPECT_NE(text.find(part), std::string::npos) << text << "\nlacks: " << part;
+    };
+    const std::string share = fmt::format("{:g}% of the scene's bounding radius", 100.0 * default_max_radius_share);
+    expect_in(meaning("max_radius"), share);
+    expect_stated("`auto` is " + share);
+    ASSERT_EQ(default_caustic_share, 0.25);
+    expect_in(meaning("caustic_max_radius"), "a quarter of --max-radius");
+    expect_stated("a quarter of `max_radius`");
+    const std::string cutoffs = fmt::format("{:g} to {:g}", smallest_branch_cutoff, largest_branch_cutoff);
+    expect_in(meaning("branch_cutoff"), cutoffs);
+    expect_stated(cutoffs + ". References are made with 1e-4");
+    EXPECT_EQ(default_branch_cutoff, 1e-4);
+    for (const char* name : {"k", "caustic_k"}) expect_in(meaning(name), fmt::format("at least {}", fewest_nearest));
+    expect_stated(fmt::format("refused below {} |", fewest_nearest));
+    // Both say of eps what PhotonMap does with it.
+    for (const std::string& text : {meaning("eps"), readme_})
+        expect_in(text, "is looked at when its squared distance times 1 + eps is within the squared radius");
+}
+
+TEST_F(Stated, ColumnsAreThoseOfTheRecords) {
+    std::multiset<std::string> in_readme;
+    for (const Row& row : table(readme_, "column"))
+        for (const std::string& name : quoted(row.at(0))) in_readme.insert(name);
+    std::multiset<std::string> in_header;
+    for (const std::string& name : split(csv_header(), ",")) in_header.insert(name);
+    EXPECT_EQ(in_readme, in_header);
+    std::string stated_components;
+    for (std::size_t i = 0; i < components.size(); ++i)
+        stated_components += (i == 0 ? "" : i + 1 == components.size() ? " or " : ", ") + ("`" + components[i] + "`");
+    expect_stated("| `component` | | " + stated_components);
+    expect_stated(fmt::format("(\\|x\\| + \\|r\\| + {:g})", smape_epsilon));
+}
+
+TEST_F(Stated, ConstantsInSentences) {
+    expect_stated(fmt::format("every {:g} seconds", default_seconds_between_saves));
+    expect_stated(fmt::format("end with exit code {}; a second one", interrupted_exit_code));
+    expect_stated(fmt::format("in {} slots a method", ensemble_slots));
+    expect_stated(fmt::format("or at {},{:03} edges", largest_path_edges / 1000, largest_path_edges % 1000));
+    expect_stated(fmt::format("sides up to {}", largest_image_side));
+    expect_stated(fmt::format("below {:g} refused", smallest_initial_radius));
+    expect_stated(fmt::format("`info` warns below {:g}", narrowest_gap));
+    expect_stated(fmt::format("a branch that carries less than {:g} (`branch_cutoff`)", default_branch_cutoff));
+    expect_stated(fmt::format("from a radius of {:g} footprints on", reference_footprints));
+    expect_stated(fmt::format("`--samples N` | adds N"));
+    ASSERT_EQ(largest_check_footprints, 0.5);
+    ASSERT_EQ(fewest_standard_errors, 4.0);
+    expect_stated("within a radius r of half a footprint or less");
+    expect_stated("more than four standard errors");
+}
+
+TEST_F(Stated, HelpShowsTheDefaultsThatCommandsUse) {
+    const auto option = [](const std::string& help, const std::string& name) {
+        for (const std::string& line : lines_of(std::regex_replace(help, std::regex("\\n {20,}"), " ")))
+            if (line.rfind("  " + name + " ", 0) == 0) return line;
+        return std::string();
+    };
+    const auto ends = [](const std::string& line, const std::string& end) {
+        EXPECT_TRUE(line.size() > end.size() && line.substr(line.size() - end.size()) == end)
+            << line << "\ndoes not end in " << end;
+    };
+    const ReferenceSettings reference;
+    const std::string reference_help = help_of({"reference"});
+    ends(option(reference_help, "--samples"), fmt::format("[{}]", reference.samples));
+    ends(option(reference_help, "--photons"), fmt::format("[{}]", reference.photons_per_pass));
+    ends(option(reference_help, "--seed"), fmt::format("[{}]", reference.seed));
+    ends(option(reference_help, "--integrator"), fmt::format("[{}]", reference.integrator));
+    ASSERT_EQ(reference.alpha, 2.0 / 3.0);
+    ends(option(reference_help, "--alpha"), "[2/3]");
+    const std::string seconds = fmt::format("[{:g}]", default_seconds_between_saves);
+    ends(option(help_of({"run"}), "--checkpoint-seconds"), seconds);
+    ends(option(help_of({"render"}), "--checkpoint-seconds"), seconds);
+    const SmokeLimits smoke;
+    EXPECT_NE(option(help_of({"run"}), "--smoke")
+                  .find(fmt::format("at most {} passes, {} photons a pass, {} seeds", smoke.passes,
+                                    smoke.photons_per_pass, smoke.seeds)),
+              std::string::npos);
+    EXPECT_NE(help_of({}).find(fmt::format("{} ended by SIGINT", interrupted_exit_code)), std::string::npos);
+}
+
+/// Of "known here: a, b, c" in a message.
+Names known_in(const std::string& message) {
+    const std::string begin = "nown here: ";
+    const std::size_t at = message.find(begin);
+    if (at == std::string::npos) return {};
+    const std::string list = message.substr(at + begin.size(), message.find_first_of(";\n", at) - at - begin.size());
+    const std::vector<std::string> names = split(list, ", ");
+    return {names.begin(), names.end()};
+}
+
+TEST_F(Stated, PluginsAreThoseThatScenesMayHave) {
+    const std::size_t begin = readme_.find("Mitsuba XML, in the names of version 3");
+    ASSERT_NE(begin, std::string::npos);
+    const std::string paragraph = readme_.substr(begin, readme_.find("\n", begin) - begin);
+    // "shapes `a`, `b`; materials `c`": what is quoted before the next kind begins.
+    const auto stated = [&](const std::string& kind, const std::string& next) {
+        const std::size_t from = paragraph.find(kind + " `");
+        EXPECT_NE(from, std::string::npos) << kind;
+        const std::vector<std::string> names = quoted(paragraph.substr(from, paragraph.find(next, from) - from));
+        return Names(names.begin(), names.end());
+    };
+    const auto known = [&](const std::string& element) {
+        return known_in(refusal_of("<scene version=\"3.0.0\">" + element + "</scene>"));
+    };
+    EXPECT_EQ(stated("shapes", ";"), known("<shape type=\"no\"/>"));
+    EXPECT_EQ(stated("materials", ";"), known("<bsdf type=\"no\" id=\"a\"/>"));
+    Names emitters = known("<emitter type=\"no\"/>");
+    const Names of_shapes = known("<shape type=\"sphere\"><emitter type=\"no\"/></shape>");
+    emitters.insert(of_shapes.begin(), of_shapes.end());
+    EXPECT_EQ(stated("emitters", ";"), emitters);
+    EXPECT_NE(paragraph.find("a `perspective` sensor"), std::string::npos);
+    EXPECT_EQ(known("<sensor type=\"no\"/>"), Names{"perspective"});
+}
+
+TEST_F(Stated, ScenesAndTheirReferencesAreThoseInTheRepository) {
+    Names scenes;
+    for (const Row& row : table(readme_, "scene")) {
+        const std::string name = quoted(row.at(0)).at(0);
+        scenes.insert(name);
+        if (!std::filesystem::exists(source / "reference" / name)) {
+            EXPECT_EQ(row.at(2), "known numbers") << name;
+            continue;
+        }
+        const Json json = read_reference_json(source / "reference" / name);
+        const std::string made = json.at("integrator") == "path" ? "path traced" : "by ppm";
+        EXPECT_EQ(row.at(2), json.at("floor_mse").at("total") == 0.0 ? "exact" : made) << name;
+    }
+    EXPECT_EQ(scenes, folders_in(source / "scenes"));
+}
+
+TEST_F(Stated, ExperimentsAreThoseInTheRepository) {
+    Names stated{"demo", "gallery"};  // at the top
+    for (const Row& row : table(readme_, "experiment"))
+        for (const std::string& name : quoted(row.at(0))) stated.insert(name);
+    Names files;
+    for (const auto& entry : std::filesystem::directory_iterator(source / "experiments"))
+        if (entry.path().extension() == ".toml") files.insert(entry.path().stem().string());
+    EXPECT_EQ(stated, files);
+    expect_stated("runs `experiments/demo.toml`");
+}
+
+TEST_F(Stated, RoomsAreThoseOfTheSources) {
+    const std::size_t begin = readme_.find("`src/` has one folder a room");
+    ASSERT_NE(begin, std::string::npos);
+    std::vector<std::string> rooms = quoted(readme_.substr(begin, readme_.find(". `tests/`", begin) - begin));
+    rooms.erase(rooms.begin());
+    EXPECT_EQ(Names(rooms.begin(), rooms.end()), folders_in(source / "src"));
+}
+
+}  // namespace
+}  // namespace photonlab
