@@ -67,6 +67,8 @@ void remove_leftovers(const std::filesystem::path& folder) {
 }
 
 TemporaryFile::TemporaryFile(const std::filesystem::path& final_name) : final_name_(final_name) {
+    if (final_name.filename().string().size() > longest_name)
+        throw InputError(final_name.string(), std::string("cannot be written: ") + std::strerror(ENAMETOOLONG));
     remove_leftovers(final_name.parent_path());
     while (true) {
         path_ = random_name(final_name);

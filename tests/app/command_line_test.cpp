@@ -25,8 +25,8 @@ TEST_F(CommandLine, MisspeltCommandsAreAnsweredWithTheNearest) {
     EXPECT_EQ(refusal_of({"rnu", "--nonsense", "x"}), "there is no command \"rnu\"; did you mean \"run\"?\n");
     EXPECT_EQ(refusal_of({"Compare", "a", "b"}), "there is no command \"Compare\"; did you mean \"compare\"?\n");
     EXPECT_EQ(refusal_of({"help", "rednr"}), "there is no command \"rednr\"; did you mean \"render\"?\n");
-    EXPECT_EQ(refusal_of({"walk"}), "there is no command \"walk\"; expected render, run, reference, compare, info\n");
-    EXPECT_EQ(refusal_of({}), "expected a command: render, run, reference, compare, info; photonlab help says more\n");
+    EXPECT_EQ(refusal_of({"walk"}), "there is no command \"walk\"; expected render, run, reference, compare, info, verify\n");
+    EXPECT_EQ(refusal_of({}), "expected a command: render, run, reference, compare, info, verify; photonlab help says more\n");
 }
 
 TEST_F(CommandLine, MisspeltOptionsAreAnsweredBeforeWhatIsMissing) {
@@ -75,8 +75,8 @@ TEST_F(CommandLine, NumbersBelowZeroAreValuesAndNoOptions) {
                          "--max-depth", "-1"})
                   .substr(0, 7),
               "memory ");
-    EXPECT_EQ(refusal_of({"render", scene, "-o", (folder_ / "a.exr").string(), "--alpha", "-0.5"}).substr(0, 5),
-              "alpha");
+    EXPECT_EQ(refusal_of({"render", scene, "-o", (folder_ / "a.exr").string(), "--alpha", "-0.5"}).substr(0, 7),
+              "--alpha");
 }
 
 }  // namespace
