@@ -121,6 +121,21 @@ void require_success(RTCDevice device) {
     throw std::runtime_error(fmt::format("Embree: error {}", static_cast<int>(error)));
 }
 
+/// One device for all scenes, since Embree can make no more than about a thousand. One thread builds: then no tie
+/// between surfaces that coincide can depend on how many there are. Configuration files would be settings from outside.
+/// Tracing runs on the caller's threads.
+RTCDevice shared_device() {
+    struct Device {
+        RTCDevice device = rtcNewDevice("threads=1,start_threads=0,ignore_config_files=1");
+        Device() { require_success(device); }
+        Device(const Device&) = delete;
+        Device& operator=(const Device&) = delete;
+        ~Device() { rtcReleaseDevice(device); }
+    };
+    static const Device shared;
+    return shared.device;
+}
+
 RTCGeometry make_mesh(RTCDevice device, const TriangleMesh& mesh) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     if (mesh.triangles.empty()) return geometry;  // Embree has no empty buffers
@@ -150,7 +165,6 @@ RTCGeometry make_analytic(RTCDevice device, std::variant<Sphere, Disk>& shape) {
 
 EmbreeScene::~EmbreeScene() {
     if (scene) rtcReleaseScene(scene);
-    if (device) rtcReleaseDevice(device);
 }
 
 void EmbreeSceneDeleter::operator()(EmbreeScene* embree) const {
@@ -159,12 +173,9 @@ void EmbreeSceneDeleter::operator()(EmbreeScene* embree) const {
 
 std::unique_ptr<EmbreeScene, EmbreeSceneDeleter> build_embree_scene(const std::vector<Shape>& shapes) {
     std::unique_ptr<EmbreeScene, EmbreeSceneDeleter> embree(new EmbreeScene);
-    // One thread builds: then no tie between surfaces that coincide can depend on how many there are. Configuration
-    // files would be settings from outside. Tracing runs on the caller's threads.
-    embree->device = rtcNewDevice("threads=1,start_threads=0,ignore_config_files=1");
-    require_success(embree->device);
-    embree->scene = rtcNewScene(embree->device);
-    require_success(embree->device);
+    const RTCDevice device = shared_device();
+    embree->scene = rtcNewScene(device);
+    require_success(device);
     rtcSetSceneFlags(embree->scene, RTC_SCENE_FLAG_ROBUST);
 
     for (const Shape& shape : shapes) {
@@ -175,14 +186,14 @@ std::unique_ptr<EmbreeScene, EmbreeSceneDeleter> build_embree_scene(const std::v
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         const auto* mesh = std::get_if<TriangleMesh>(&shapes[i].geometry);
         RTCGeometry geometry =
-            mesh ? make_mesh(embree->device, *mesh) : make_analytic(embree->device, embree->analytic[next_analytic++]);
+            mesh ? make_mesh(device, *mesh) : make_analytic(device, embree->analytic[next_analytic++]);
         rtcCommitGeometry(geometry);
         rtcAttachGeometryByID(embree->scene, geometry, static_cast<unsigned>(i));
         rtcReleaseGeometry(geometry);
-        require_success(embree->device);
+        require_success(device);
     }
     rtcCommitScene(embree->scene);
-    require_success(embree->device);
+    require_success(device);
     return embree;
 }
 

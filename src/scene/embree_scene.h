@@ -16,12 +16,12 @@ struct EmbreeScene {
     EmbreeScene& operator=(const EmbreeScene&) = delete;
     ~EmbreeScene();
 
-    RTCDevice device = nullptr;
-    RTCScene scene = nullptr;
+    RTCScene scene = nullptr;                          ///< holds its device
     std::vector<std::variant<Sphere, Disk>> analytic;  ///< what user geometries point to; fixed once built
 };
 
-/// Hands the shapes to Embree. Throws std::runtime_error when Embree fails (it is out of memory).
+/// Hands the shapes to Embree. Throws std::bad_alloc when memory does not suffice, and std::runtime_error when Embree
+/// fails otherwise.
 std::unique_ptr<EmbreeScene, EmbreeSceneDeleter> build_embree_scene(const std::vector<Shape>& shapes);
 
 }  // namespace photonlab

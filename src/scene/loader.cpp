@@ -14,6 +14,7 @@
 
 #include "core/error.h"
 #include "core/hash.h"
+#include "core/text.h"
 #include "scene/material_reader.h"
 #include "scene/properties.h"
 #include "scene/shape_reader.h"
@@ -63,6 +64,7 @@ public:
             }
         }
         if (!has_sensor) throw InputError(root.place, "expected a <sensor type=\"perspective\"> in the scene");
+        note_clipping();
         if (!has_integrator && root.family() == MitsubaFamily::Version06)
             note("no integrator: Mitsuba 0.6 would render direct light alone, here max_depth is unlimited");
         if (!lights_without_shape_.empty())
@@ -75,9 +77,13 @@ private:
                                                     element.attribute("type"), known));
     }
 
+    /// Notes are recorded with every run: as text, of bounded length, each once.
     void note(const std::string& sentence) {
-        if (std::find(scene_.notes.begin(), scene_.notes.end(), sentence) == scene_.notes.end())
-            scene_.notes.push_back(sentence);
+        constexpr std::size_t longest = 500;
+        std::string text = valid_text(sentence);
+        if (const std::string_view beginning = first_columns(text, longest); beginning.size() < text.size())
+            text = std::string(beginning) + "...";
+        if (noted_.insert(text).second) scene_.notes.push_back(text);
     }
 
     /// Collects what has an id. An alias is another id of what stands before it.
@@ -349,13 +355,43 @@ private:
             if (properties.number(name).value_or(0.0) != 0.0)
                 throw InputError(properties.place_of(name),
                                  fmt::format("{}: expected 0, a shifted image plane is not known here", name));
-        for (const char* unused : {"near_clip", "far_clip", "focus_distance", "shutter_open", "shutter_close"})
+        near_clip_ = properties.number("near_clip").value_or(near_clip_);
+        far_clip_ = properties.number("far_clip").value_or(far_clip_);
+        for (const char* unused : {"focus_distance", "shutter_open", "shutter_close"})
             if (properties.number(unused)) note(fmt::format("sensor \"perspective\": not read: {}", unused));
         properties.require_all_known();
     }
 
+    /// Mitsuba shows nothing that is nearer to the camera than near_clip or farther than far_clip, along its view.
+    void note_clipping() {
+        const Matrix& camera = scene_.camera.to_world;
+        const VectorD position(camera[3][0], camera[3][1], camera[3][2]);
+        const VectorD forward = VectorD(camera[2][0], camera[2][1], camera[2][2]).normalized();
+        bool is_too_near = false;
+        bool is_too_far = false;
+        const auto look_at = [&](const VectorD& point, double radius) {
+            const double depth = (point - position).dot(forward);
+            is_too_near = is_too_near || (radius == 0.0 && depth > 0.0 && depth < near_clip_);
+            is_too_far = is_too_far || depth + radius > far_clip_;
+        };
+        for (const ShapeDescription& shape : scene_.shapes) {
+            if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry))
+                for (const VectorD& vertex : mesh->positions) look_at(vertex, 0.0);
+            if (const auto* sphere = std::get_if<SphereDescription>(&shape.geometry))
+                look_at(sphere->centre, sphere->radius);
+            if (const auto* disk = std::get_if<DiskDescription>(&shape.geometry)) look_at(disk->centre, disk->radius);
+        }
+        if (is_too_near)
+            note(fmt::format("near_clip {:g}: what is nearer to the camera is shown all the same", near_clip_));
+        if (is_too_far)
+            note(fmt::format("far_clip {:g}: what is farther from the camera is shown all the same", far_clip_));
+    }
+
     SceneDescription& scene_;
     std::string& bytes_read_;
+    std::set<std::string> noted_;  // scene_.notes
+    double near_clip_ = 1e-2;      // of the camera
+    double far_clip_ = 1e4;
     std::size_t texture_pixels_ = 0;
     std::map<std::string, const XmlElement*> by_id_;
     std::map<const XmlElement*, std::size_t> materials_;

@@ -32,6 +32,26 @@ Color read_factor(Properties& properties, const std::string& name, double missin
     return Color(factor);
 }
 
+/// What 0.6 has in place of to_uv.
+Matrix read_scale_and_offset(Properties& properties) {
+    const double scale = properties.number("uvscale").value_or(1.0);
+    Matrix to_uv;
+    to_uv.setScale(
+        VectorD(properties.number("uscale").value_or(scale), properties.number("vscale").value_or(scale), 1.0));
+    to_uv[3][0] = properties.number("uoffset").value_or(0.0);
+    to_uv[3][1] = properties.number("voffset").value_or(0.0);
+    return to_uv;
+}
+
+/// What 0.6 has in place of raw: without a gamma it decodes as the file says.
+bool is_linear(Properties& properties) {
+    const auto gamma = properties.number("gamma");
+    if (gamma && *gamma != 0.0 && *gamma != 1.0)
+        throw InputError(properties.place_of("gamma"),
+                         fmt::format("gamma: expected 1, or none for that of the file, got {}", *gamma));
+    return gamma && *gamma == 1.0;
+}
+
 std::shared_ptr<const Texture> read_bitmap(const XmlElement& element, const MaterialSource& source) {
     if (element.require("type") != "bitmap")
         throw InputError(element.place,
@@ -45,10 +65,14 @@ std::shared_ptr<const Texture> read_bitmap(const XmlElement& element, const Mate
             throw InputError(properties.place_of(name),
                              fmt::format("{}: only \"{}\" is known here, got \"{}\"", name, only, value));
     };
-    require_only("filter_type", "bilinear");
+    const bool is_version_06 = element.family() == MitsubaFamily::Version06;
+    // What filters over a pixel in 0.6 is bilinear at a point of it.
+    const std::string filter = properties.text("filter_type").value_or("bilinear");
+    if (!is_version_06 || (filter != "ewa" && filter != "trilinear")) require_only("filter_type", "bilinear");
     require_only("wrap_mode", "repeat");
-    const bool raw = properties.boolean("raw").value_or(false);
-    const Matrix to_uv = properties.transform("to_uv").value_or(Matrix());
+    const bool raw = is_version_06 ? is_linear(properties) : properties.boolean("raw").value_or(false);
+    const Matrix to_uv =
+        is_version_06 ? read_scale_and_offset(properties) : properties.transform("to_uv").value_or(Matrix());
     properties.require_all_known();
     if (!properties.objects().empty())
         throw InputError(properties.objects().front()->place, "bitmap: expected no nested plugin");

@@ -168,7 +168,7 @@ std::filesystem::path first_existing(const std::vector<std::filesystem::path>& c
 class Reader {
 public:
     Reader(const std::map<std::string, std::string>& parameters, std::string& bytes_read)
-        : parameters_(parameters), bytes_read_(bytes_read) {}
+        : parameters_(parameters), bytes_read_(bytes_read), values_(parameters.begin(), parameters.end()) {}
 
     XmlElement read_file(const std::filesystem::path& file, const std::string& from,
                          std::shared_ptr<const SceneFile> includer) {
@@ -256,8 +256,7 @@ private:
             XmlElement converted = convert(child, file, scene_file, lines, depth + 1);
             if (converted.tag == "default") {
                 const std::string& name = converted.require("name");
-                const auto given = parameters_.find(name);
-                values_.emplace(name, given != parameters_.end() ? given->second : converted.require("value"));
+                if (!parameters_.count(name)) values_.emplace(name, converted.require("value"));
                 used_.insert(name);
             } else if (converted.tag == "include") {
                 XmlElement included = read_file(included_file(converted), converted.place, scene_file);
@@ -302,32 +301,40 @@ private:
             }
             std::size_t end = i + 1;
             while (end < text.size() && is_name_character(text[end])) ++end;
-            const std::string name(text.substr(i + 1, end - i - 1));
-            std::size_t length = name.size();
-            while (length > 0 && !lookup(name.substr(0, length))) --length;
-            if (length == 0)
-                throw InputError(place, fmt::format("${} has no <default> before it and no value was given", name));
-            result += *lookup(name.substr(0, length));
+            const std::string_view name = text.substr(i + 1, end - i - 1);
+            const auto known = longest_known(name);
+            if (known == values_.end())
+                throw InputError(place,
+                                 fmt::format("${} has no <default> before it and no value was given", excerpt(name)));
+            if (parameters_.count(known->first)) used_.insert(known->first);
+            result += known->second;
             if (result.size() > value_limit) break;
-            i += 1 + length;
+            i += 1 + known->first.size();
         }
         if (result.size() > value_limit)
             throw InputError(place, fmt::format("expected at most {} characters in a value", value_limit));
         return result;
     }
 
-    const std::string* lookup(const std::string& name) {
-        if (const auto given = parameters_.find(name); given != parameters_.end()) {
-            used_.insert(name);
-            return &given->second;
+    using Values = std::map<std::string, std::string, std::less<>>;
+
+    /// The longest name with a value that `text` begins with. Names may be long, so it is not tried length by length:
+    /// the last name up to `text` in the alphabet begins with every name that `text` begins with.
+    Values::const_iterator longest_known(std::string_view text) const {
+        while (true) {
+            const auto after = values_.upper_bound(text);
+            if (after == values_.begin()) return values_.end();
+            const auto candidate = std::prev(after);
+            const std::string& name = candidate->first;
+            const auto differs = std::mismatch(name.begin(), name.end(), text.begin(), text.end());
+            if (differs.first == name.end()) return candidate;
+            text = text.substr(0, static_cast<std::size_t>(differs.first - name.begin()));
         }
-        const auto found = values_.find(name);
-        return found == values_.end() ? nullptr : &found->second;
     }
 
     const std::map<std::string, std::string>& parameters_;
     std::string& bytes_read_;
-    std::map<std::string, std::string> values_;  // of the <default>s read so far
+    Values values_;  // of parameters_, and of the <default>s read so far
     std::set<std::string> used_;
     std::vector<std::filesystem::path> open_files_;
     std::size_t elements_ = 0;

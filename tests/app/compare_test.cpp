@@ -48,7 +48,7 @@ TEST_F(Compare, PrintsTheErrorsOfAnImageAsRenderDoes) {
         EXPECT_EQ(value_of(said, "reference_floor"), errors->reference_floor);
         EXPECT_EQ(value_of(said, "nonfinite"), 0.0);
     }
-    const double rmse = judge(image, reference, "total", false)->rmse;
+    const double rmse = std::sqrt(judge(image, reference, "total", false)->mse_unbiased.value());
     EXPECT_NEAR(value_of(rendered, "rmse"), rmse, 1e-5 * rmse) << rendered;
 }
 

@@ -107,6 +107,9 @@ std::vector<Default> defaults() {
     const auto size = [](const SceneDescription& scene) {
         return Values{double(scene.camera.width), double(scene.camera.height)};
     };
+    const auto middle = [](const SceneDescription& scene) {
+        return numbers(ColorD(material(scene).texture->color_at({0.5f, 0.5f})));
+    };
     const auto max_depth = [](const SceneDescription& scene) { return Values{double(scene.max_depth)}; };
     const auto mean_reflectance = reflectance;
     const std::string obj = "<shape type='obj'><string name='filename' value='mesh.obj'/>";
@@ -207,7 +210,16 @@ std::vector<Default> defaults() {
          shape(bitmap),
          [](const SceneDescription& scene) { return numbers(ColorD(material(scene).texture->image.pixels.at(0))); },
          {0.25, 0.25, 0.25}},
-        {"bitmap", "to_uv", "0.6 3", "bitmap.cpp", shape(bitmap),
+        {"bitmap", "filter_type", "3", "bitmap.cpp: bilinear", shape(bitmap), middle, {0.375, 0.375, 0.375}},
+        {"bitmap",
+         "filter_type",
+         "0.6",
+         "bitmap.cpp: ewa, which at a point is bilinear",
+         shape(bitmap),
+         middle,
+         {0.375, 0.375, 0.375}},
+        {"bitmap", "gamma", "0.6", "bitmap.cpp: that of the file", shape(bitmap), middle, {0.375, 0.375, 0.375}},
+        {"bitmap", "to_uv", "0.6 3", "bitmap.cpp, texture.cpp: uscale, uoffset", shape(bitmap),
          [](const SceneDescription& scene) { return numbers(material(scene).texture->to_uv); }, numbers(Matrix())},
         {"bitmap",
          "wrap_mode",
@@ -215,7 +227,7 @@ std::vector<Default> defaults() {
          "bitmap.cpp: repeat",
          shape(bitmap),
          [](const SceneDescription& scene) {
-             return numbers(ColorD(material(scene).texture->color_at({7.5f, -3.25f})));
+             return numbers(ColorD(material(scene).texture->color_at({7.25f, -3.25f})));
          },
          {0.25, 0.25, 0.25}},
 
@@ -362,9 +374,9 @@ TEST(Defaults, AreMitsubas) {
     std::ofstream(folder / "mesh.obj") << "v 0 0 0\nv 2 0 0\nv 0 2 0\nvt 0 0\nvt 1 0.25\nvt 0 1\nvn 3 0 4\n"
                                           "f 1/1/1 2/2/1 3/3/1\n";
     std::ofstream(folder / "groups.obj") << "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 0 0 1\ng a\nf 1 2 3\ng b\nf 1 2 4\n";
-    // One pixel of 0.25, in Radiance's format: mantissas of 128 / 256, and exponent -1.
-    std::ofstream(folder / "grey.hdr", std::ios::binary) << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n"
-                                                         << "\x80\x80\x80\x7f";
+    // Two pixels, 0.25 and 0.5, in Radiance's format: mantissas of 128 / 256, and exponents -1 and 0.
+    std::ofstream(folder / "grey.hdr", std::ios::binary) << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n"
+                                                         << "\x80\x80\x80\x7f\x80\x80\x80\x80";
     for (const Default& row : defaults())
         for (const std::string version : {"0.6.0", "3.0.0"}) {
             if (std::string(row.families).find(version.front() == '0' ? "0.6" : "3") == std::string::npos) continue;

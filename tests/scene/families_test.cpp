@@ -272,6 +272,41 @@ TEST_F(FamiliesTest, WithoutAnUpEachTurnsTheCameraItsOwnWay) {
     }
 }
 
+// texture.cpp of 0.6: uv * scale + offset. bitmap.cpp of 0.6: gamma, and filters over a pixel, which at a point are
+// bilinear. Of 3: to_uv and raw.
+TEST_F(FamiliesTest, BitmapsHaveOtherPropertiesIn06) {
+    write("grey.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x80\x80\x80\x7f\x80\x80\x80\x80");
+    const auto texture = [&](const std::string& version, const std::string& inside) {
+        const auto scene = load_as(version,
+                                   "<shape type='sphere'><bsdf type='diffuse'><texture type='bitmap' "
+                                   "name='reflectance'><string name='filename' value='grey.hdr'/>" +
+                                       inside + "</texture></bsdf></shape>");
+        return *scene.materials.at(0).texture;
+    };
+    const auto moved = [&](const std::string& inside) {
+        const Matrix& to_uv = texture("0.6.0", inside).to_uv;
+        return VectorD(0.5, 0.25, 0.0) * to_uv;
+    };
+    expect_near(moved(""), {0.5, 0.25, 0}, 1e-12);
+    expect_near(moved("<float name='uvscale' value='4'/>"), {2, 1, 0}, 1e-12);
+    expect_near(moved("<float name='uvscale' value='4'/><float name='vscale' value='8'/><float name='uoffset' "
+                      "value='0.1'/><float name='voffset' value='0.2'/>"),
+                {2.1, 2.2, 0}, 1e-12);
+    for (const std::string filter : {"ewa", "trilinear", "bilinear"}) {
+        const std::string property = "<string name='filterType' value='" + filter + "'/>";
+        EXPECT_NEAR(texture("0.6.0", property).color_at({0.5f, 0.5f}).x, 0.375, 1e-6) << filter;
+        if (filter != "bilinear") {
+            EXPECT_THROW(texture("3.0.0", property), InputError) << filter;
+        }
+    }
+    EXPECT_NEAR(texture("0.6.0", "<float name='gamma' value='1'/>").image.pixels.at(0).x, 0.25, 1e-6);
+    for (const std::string other :
+         {"<boolean name='raw' value='true'/>", "<transform name='to_uv'/>", "<float name='gamma' value='2.2'/>"})
+        EXPECT_THROW(texture("0.6.0", other), InputError) << other;
+    for (const std::string other : {"<float name='uscale' value='2'/>", "<float name='gamma' value='1'/>"})
+        EXPECT_THROW(texture("3.0.0", other), InputError) << other;
+}
+
 // parser.cpp: an <include> is looked for beside the file that it stands in first; scenehandler.cpp: beside the scene.
 TEST_F(FamiliesTest, IncludesAreLookedForInTheOrderOfTheirFamily) {
     write("part.xml", "<scene version='3.0.0'><bsdf type='diffuse' id='beside the scene'/></scene>");

@@ -137,11 +137,13 @@ TEST_F(LoaderTest, MirroringKeepsTheOutsideOutside) {
 
 TEST_F(LoaderTest, FieldOfViewFollowsItsAxis) {
     const auto fov = [&](const std::string& axis) {
-        return load("<scene version='3.0.0'><sensor type='perspective'><float name='fov' value='60'/><string name='fovAxis' value='" +
-                    axis +
-                    "'/><film type='hdrfilm'><integer name='width' value='200'/><integer name='height' "
-                    "value='100'/></film>"
-                    "</sensor></scene>")
+        return load(
+                   "<scene version='3.0.0'><sensor type='perspective'><float name='fov' value='60'/><string "
+                   "name='fovAxis' value='" +
+                   axis +
+                   "'/><film type='hdrfilm'><integer name='width' value='200'/><integer name='height' "
+                   "value='100'/></film>"
+                   "</sensor></scene>")
             .camera.fov_x;
     };
     const double t = std::tan(pi / 6);
@@ -161,7 +163,8 @@ TEST_F(LoaderTest, WithoutAnAngleTheLensIsFiftyMillimetres) {
 
 TEST_F(LoaderTest, DefaultsAreReplacedByParameters) {
     const std::string text =
-        "<scene version='3.0.0'><default name='w' value='12'/><default name='ww' value='34'/><sensor type='perspective'>"
+        "<scene version='3.0.0'><default name='w' value='12'/><default name='ww' value='34'/><sensor "
+        "type='perspective'>"
         "<film type='hdrfilm'><integer name='width' value='$ww'/><integer name='height' value='$w'/></film>"
         "</sensor></scene>";
     EXPECT_EQ(load(text).camera.width, 34);
@@ -174,9 +177,11 @@ TEST_F(LoaderTest, DefaultsAreReplacedByParameters) {
 TEST_F(LoaderTest, IncludesAndNestedReferencesAreFollowed) {
     std::filesystem::create_directories(folder_ / "parts");
     write("parts/materials.xml",
-          "<scene version='3.0.0'><include filename='inner.xml'/><bsdf type='twosided' id='wall'><ref id='paint'/></bsdf></scene>");
+          "<scene version='3.0.0'><include filename='inner.xml'/><bsdf type='twosided' id='wall'><ref "
+          "id='paint'/></bsdf></scene>");
     write("parts/inner.xml",
-          "<scene version='3.0.0'><bsdf type='diffuse' id='paint'><rgb name='reflectance' value='$level'/></bsdf></scene>");
+          "<scene version='3.0.0'><bsdf type='diffuse' id='paint'><rgb name='reflectance' "
+          "value='$level'/></bsdf></scene>");
     const auto scene = load(
         "<scene version='3.0.0'><default name='level' value='0.25'/><sensor type='perspective'/>"
         "<shape type='sphere'><ref name='bsdf' id='wall'/></shape><include filename='parts/materials.xml'/></scene>");
