@@ -5,7 +5,7 @@
 #pragma once
 
 #include "scene/scene.h"
-#include "transport/hit_points.h"
+#include "transport/camera_pass.h"
 
 namespace photonlab {
 
