@@ -25,7 +25,7 @@
 #include "experiment/recorder.h"
 #include "experiment/reference.h"
 #include "experiment/run_record.h"
-#include "experiment/runner.h"
+#include "render/run_methods.h"
 #include "experiment/version.h"
 #include "image/exr.h"
 #include "image/image_codecs.h"
@@ -66,7 +66,7 @@ Checkpoint checkpoint_of(const RenderOptions& options, const RunIdentity& identi
                            {"settings", settings_json(settings.method)},
                            {"seed", settings.seed},
                            {"passes", settings.passes},
-                           {"estimated", settings.estimated},
+                           {"shown", settings.shown},
                            {"recorded", recorded},
                            {"csv", !options.csv.empty()},
                            {"width", identity.width},
@@ -210,7 +210,7 @@ void render(const RenderOptions& options) {
     const std::vector<std::uint64_t> recorded =
         options.csv.empty() ? std::vector{options.passes} : powers_of_two(options.passes);
     std::set_union(recorded.begin(), recorded.end(), snapshots.begin(), snapshots.end(),
-                   std::back_inserter(settings.estimated));
+                   std::back_inserter(settings.shown));
 
     const MemoryEstimate memory = MemoryEstimator(scene, options.samples_per_pixel).of({settings}, 0);
     require_memory(options.scene.string(), memory);

@@ -165,7 +165,7 @@ private:
         point.settings.passes = run.plan.passes;
         point.settings.threads = experiment_.threads;
         std::set_union(run.plan.recorded.begin(), run.plan.recorded.end(), run.plan.snapshots.begin(),
-                       run.plan.snapshots.end(), std::back_inserter(point.settings.estimated));
+                       run.plan.snapshots.end(), std::back_inserter(point.settings.shown));
         point.reference_key = reference_key_of(run, scene, point.settings.method.max_depth);
         point.key = point_key(experiment_, run, point.settings, scene, point.reference_key);
         point.snapshots = Json(run.plan.snapshots).dump();

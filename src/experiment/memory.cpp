@@ -92,13 +92,13 @@ const MemoryEstimator::PhotonSize& MemoryEstimator::photon_size(const RunSetting
 }
 
 double MemoryEstimator::photon_bytes(const std::vector<RunSettings>& together) {
-    const auto is_any = [&](PhotonNeed need) {
+    const auto is_any = [&](Needs::Photons photons) {
         return std::any_of(together.begin(), together.end(), [&](const RunSettings& settings) {
-            return find_integrator_kind(settings.method.integrator).needs == need;
+            return needs_of(settings.method).photons == photons;
         });
     };
-    const bool of_pass = is_any(PhotonNeed::PassMap);
-    const bool of_all = is_any(PhotonNeed::AllPassesMaps);
+    const bool of_pass = is_any(Needs::Photons::OfPass);
+    const bool of_all = is_any(Needs::Photons::OfAllPasses);
     if (!of_pass && !of_all) return 0.0;
     const PhotonSize& size = photon_size(together[0]);
     double bytes = std::max(2.0 * size.photon_bytes, of_pass ? size.map_bytes : 0.0);

@@ -11,7 +11,7 @@
 #include <tuple>
 #include <vector>
 
-#include "experiment/runner.h"
+#include "render/pass_loop.h"
 
 namespace photonlab {
 

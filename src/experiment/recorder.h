@@ -15,7 +15,7 @@
 #include "core/files.h"
 #include "experiment/kept_files.h"
 #include "experiment/reference.h"
-#include "experiment/runner.h"
+#include "render/pass_loop.h"
 #include "image/image.h"
 #include "image/metrics.h"
 

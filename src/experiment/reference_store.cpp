@@ -16,7 +16,7 @@
 #include "experiment/reference_check.h"
 #include "experiment/version.h"
 #include "image/exr.h"
-#include "integrators/registry.h"
+#include "render/pass_loop.h"
 
 namespace photonlab {
 
@@ -32,14 +32,12 @@ constexpr std::string_view method_attribute = "photonlab.method";
 /// The random streams of one half.
 struct HalfPurposes {
     std::string_view name;
-    RandomPurpose paths;
-    RandomPurpose photons;
-    RandomPurpose direct;
+    LoopPurposes purposes;
 };
 
 constexpr HalfPurposes half_purposes[] = {
-    {halves[0], RandomPurpose::ReferenceHalfA, RandomPurpose::ReferencePhotonsA, RandomPurpose::ReferenceDirectA},
-    {halves[1], RandomPurpose::ReferenceHalfB, RandomPurpose::ReferencePhotonsB, RandomPurpose::ReferenceDirectB}};
+    {halves[0], {RandomPurpose::ReferenceHalfA, RandomPurpose::ReferencePhotonsA, RandomPurpose::ReferenceDirectA}},
+    {halves[1], {RandomPurpose::ReferenceHalfB, RandomPurpose::ReferencePhotonsB, RandomPurpose::ReferenceDirectB}}};
 
 /// How the samples are made, in words that tell whether others can be joined to them.
 std::string describe_method(const MethodSettings& method) {
@@ -79,19 +77,13 @@ std::uint64_t read_number(const std::filesystem::path& file, const Metadata& met
 /// One half while samples are added: what was there, and an integrator that makes what is new.
 class GrowingHalf {
 public:
-    GrowingHalf(std::filesystem::path file, const std::string& key, const MethodSettings& method,
-                const IntegratorContext& context, RandomPurpose photon_purpose)
+    GrowingHalf(std::filesystem::path file, const std::string& key, const Scene& scene, const HitPoints& hit_points,
+                const RunSettings& settings, const LoopPurposes& purposes)
         : file_(std::move(file)),
           key_(key),
-          seed_(context.seed),
-          method_(method),
-          scene_(context.scene),
-          threads_(context.threads),
-          photon_settings_{.paths = method.photons_per_pass,
-                           .seed = context.seed,
-                           .max_depth = method.max_depth,
-                           .purpose = photon_purpose},
-          integrator_(make_integrator(method, context)) {
+          seed_(settings.seed),
+          method_(settings.method),
+          loop_(scene, hit_points, {settings}, purposes) {
         if (!std::filesystem::exists(file_)) return;
         Metadata metadata;
         stored_ = read_exr(file_, &metadata);
@@ -118,18 +110,13 @@ public:
 
     void add_sample() {
         ++new_samples_;
-        if (find_integrator_kind(method_.integrator).needs == PhotonNeed::PassMap) {
-            photons_.begin_pass(trace_photons(scene_, photon_settings_, samples(), threads_));
-            photons_.index_pass();
-        }
-        integrator_->run_pass(samples(), photons_, [](Stage) {});
-        photons_.end_pass();
+        loop_.take(samples());
     }
 
     /// Mean over old and new samples, in double until it is stored.
     Image mean() {
         if (new_samples_ == 0) return stored_;
-        Image image = integrator_->estimate(photons_, [](Stage) {});
+        Image image = loop_.image();
         if (stored_samples_ == 0) return image;
         const double share = static_cast<double>(new_samples_) / static_cast<double>(samples());
         for (Layer& layer : image.layers) {
@@ -156,11 +143,7 @@ private:
     const std::string key_;
     const std::uint64_t seed_;
     const MethodSettings method_;
-    const Scene& scene_;
-    const int threads_;
-    const PhotonSettings photon_settings_;
-    std::unique_ptr<Integrator> integrator_;
-    PhotonSupply photons_;
+    PassLoop loop_;
     Image stored_;
     std::uint64_t stored_samples_ = 0;
     std::uint64_t new_samples_ = 0;
@@ -252,15 +235,9 @@ Json add_reference_samples(const Scene& scene, const ReferenceSettings& settings
     const double seconds_before = stored_seconds(folder);
 
     const HitPoints hit_points = trace_hit_points(scene, settings.samples_per_pixel, settings.threads);
-    const auto half = [&](const HalfPurposes& purposes) {
-        return GrowingHalf(half_file(folder, purposes.name), key, method,
-                           IntegratorContext{.scene = scene,
-                                             .hit_points = hit_points,
-                                             .seed = settings.seed,
-                                             .threads = settings.threads,
-                                             .path_purpose = purposes.paths,
-                                             .direct_purpose = purposes.direct},
-                           purposes.photons);
+    const auto half = [&](const HalfPurposes& of_half) {
+        return GrowingHalf(half_file(folder, of_half.name), key, scene, hit_points,
+                           {.method = method, .seed = settings.seed, .threads = settings.threads}, of_half.purposes);
     };
     GrowingHalf half_a = half(half_purposes[0]);
     GrowingHalf half_b = half(half_purposes[1]);

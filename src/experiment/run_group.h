@@ -17,7 +17,7 @@
 #include "experiment/ensemble.h"
 #include "experiment/experiment_file.h"
 #include "experiment/reference.h"
-#include "experiment/runner.h"
+#include "render/run_methods.h"
 #include "scene/scene.h"
 #include "transport/camera_pass.h"
 

@@ -91,7 +91,7 @@ Json run_json(const RunRecord& record, const Recorder& recorder, const RunState&
           {"power_cut", last.power_cut},
           {"camera_weight_cut", hit_points.weight_cut},
           {"nonfinite_camera_paths", hit_points.nonfinite},
-          {"nonfinite_photons", last.nonfinite_photons + last.report.nonfinite},
+          {"nonfinite_photons", last.nonfinite_photons + last.nonfinite_in_maps},
           {"nonfinite_pixels", recorder.nonfinite_pixels()}}},
         {"nonfinite_pixels", nonfinite_pixels},
         {"snapshots", snapshots},

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "integrators/registry.h"
+#include "render/run_methods.h"
 
 namespace photonlab {
 
@@ -15,10 +16,10 @@ constexpr std::uint64_t measured_passes = 3;
 
 /// Passes of `paths` photon paths: the state after each pass whose image was asked for, and after the last.
 std::vector<RunState> measure(const Scene& scene, const CoarseView& view, RunSettings settings, std::uint64_t paths,
-                              std::uint64_t passes, std::vector<std::uint64_t> estimated) {
+                              std::uint64_t passes, std::vector<std::uint64_t> shown) {
     settings.method.photons_per_pass = paths;
     settings.passes = passes;
-    settings.estimated = std::move(estimated);
+    settings.shown = std::move(shown);
     std::vector<RunState> states;
     const RunState last =
         run_methods(scene, view.hit_points, {settings},
@@ -63,7 +64,7 @@ TimeEstimate estimate_time(const Scene& scene, const CoarseView& view, const Run
     if (has_photons)
         estimate.trace_seconds =
             last.times.of(Stage::Trace) * photon_scale / static_cast<double>(measured_passes) * passes;
-    for (const std::uint64_t pass : settings.estimated)
+    for (const std::uint64_t pass : settings.shown)
         estimate.seconds += first + growth * static_cast<double>(pass > 0 ? pass - 1 : 0);
     return estimate;
 }

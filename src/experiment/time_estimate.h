@@ -13,7 +13,7 @@
 #include <functional>
 
 #include "experiment/coarse_view.h"
-#include "experiment/runner.h"
+#include "render/pass_loop.h"
 
 namespace photonlab {
 

@@ -1,8 +1,15 @@
-#include "integrators/path.h"
+// Path tracing from the hit points: one path at each in every pass. Unbiased, free of photons and radii, and so the
+// independent method by which the others are judged; references are made with it.
+//
+// At each vertex light is found twice, by a connection to a point on a light and by the direction that continues the
+// path, and the two are weighted by the balance heuristic: with densities p and q per steradian, w_p = p / (p + q).
+//
+// [Kajiya 1986, "The Rendering Equation"; Veach & Guibas 1995, "Optimally Combining Sampling Techniques"]
 
 #include "core/error.h"
 #include "core/parallel.h"
 #include "integrators/layers.h"
+#include "integrators/registry.h"
 #include "scene/emitter.h"
 #include "transport/direct_light.h"
 #include "transport/path_length.h"
@@ -98,25 +105,19 @@ public:
         require_findable_light(context.scene, max_depth_);
     }
 
-    void run_pass(std::uint64_t pass, const PhotonSupply&, const StageListener& enter) override {
-        enter(Stage::Trace);
-        add_paths(pass, sums_);
+    void take(const Pass& pass) override {
+        add_paths(pass.number, pass.points, sums_);
         ++passes_;
     }
 
-    Image estimate(const PhotonSupply&, const StageListener& enter) override {
-        enter(Stage::Trace);
-        if (passes_ > 0) return image_of(sums_, 1.0 / static_cast<double>(passes_), true);
+    MethodLayers image(const PhotonsOfAllPasses*) override {
+        if (passes_ > 0) return layers_of(sums_, 1.0 / static_cast<double>(passes_), true);
         std::vector<PathSample> once(sums_.size());
-        add_paths(0, once);
-        return image_of(once, 1.0, false);
+        add_paths(0, context_.hit_points, once);
+        return layers_of(once, 1.0, false);
     }
 
-    IntegratorReport report() const override {
-        IntegratorReport report;
-        report.hit_point_bytes = hit_point_bytes(context_.hit_points) + sums_.size() * sizeof(PathSample);
-        return report;
-    }
+    IntegratorReport report() const override { return {.bytes = sums_.size() * sizeof(PathSample)}; }
 
     void exchange(StateArchive& archive) override {
         archive.exchange(passes_);
@@ -124,8 +125,8 @@ public:
     }
 
 private:
-    void add_paths(std::uint64_t pass, std::vector<PathSample>& sums) const {
-        const HitPointList& points = context_.hit_points.points;
+    void add_paths(std::uint64_t pass, const HitPoints& hit_points, std::vector<PathSample>& sums) const {
+        const HitPointList& points = hit_points.points;
         parallel_for(block_count(points.size(), hit_points_per_block), context_.threads, [&](std::size_t block) {
             const BlockRange range = block_range(block, points.size(), hit_points_per_block);
             RandomStreams streams(context_.seed, context_.path_purpose, pass);
@@ -138,13 +139,12 @@ private:
         });
     }
 
-    Image image_of(const std::vector<PathSample>& sums, double scale, bool with_gathered) const {
-        return make_layers(context_.hit_points, max_depth_,
-                           to_pixels(
-                               context_.hit_points, [&](std::size_t i) { return sums[i].direct; }, scale),
-                           to_pixels(
-                               context_.hit_points,
-                               [&](std::size_t i) { return with_gathered ? sums[i].gathered : ColorD(0.0); }, scale));
+    MethodLayers layers_of(const std::vector<PathSample>& sums, double scale, bool with_gathered) const {
+        return {.gathered = to_pixels(
+                    context_.hit_points, [&](std::size_t i) { return with_gathered ? sums[i].gathered : ColorD(0.0); },
+                    scale),
+                .direct = to_pixels(
+                    context_.hit_points, [&](std::size_t i) { return sums[i].direct; }, scale)};
     }
 
     const int max_depth_;
@@ -155,8 +155,14 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_path(const MethodSettings& settings, const IntegratorContext& context) {
-    return std::make_unique<PathTracing>(settings, context);
+IntegratorKind path_kind() {
+    return {.name = "path",
+            .needs =
+                [](const MethodSettings&) {
+                    return Needs{.direct = Needs::Direct::ByItself, .passes = Needs::Passes::Independent};
+                },
+            .settings = {"max_depth", "branch_cutoff"},
+            .make = make_integrator_of<PathTracing>};
 }
 
 }  // namespace photonlab

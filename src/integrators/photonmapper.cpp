@@ -1,10 +1,19 @@
-#include "integrators/photonmapper.h"
+// Photon mapping, directly visualised: all photons of all passes so far, gathered at the hit points without final
+// gathering. The baseline whose bias progressive photon mapping removes. Caustic photons, which came from the light by
+// mirrors and glass alone, have a map and settings of their own.
+//
+// Mode `radius` averages over a fixed disc: with more photons its variance vanishes and its bias stays. Mode `nearest`
+// averages over the k nearest photons: with more photons the disc and with it the bias shrink, and the variance stays
+// near 1/k. Its memory grows with the passes.
+//
+// [Jensen 1996, "Global Illumination using Photon Maps"; Jensen 2001, chapter 7]
 
 #include "core/parallel.h"
 #include "gather/photon_map.h"
 #include "gather/search_order.h"
 #include "integrators/density_estimate.h"
 #include "integrators/layers.h"
+#include "integrators/registry.h"
 
 namespace photonlab {
 
@@ -23,7 +32,7 @@ struct Search {
 class PhotonMapping : public Integrator {
 public:
     PhotonMapping(const MethodSettings& settings, const IntegratorContext& context)
-        : settings_(settings), context_(context), direct_(context, settings), order_(context.hit_points.points) {
+        : settings_(settings), context_(context), order_(context.hit_points.points) {
         global_.k = static_cast<std::size_t>(settings.k);
         caustic_.k = static_cast<std::size_t>(settings.caustic_k);
         const Scene& scene = context.scene;
@@ -46,36 +55,23 @@ public:
         }
     }
 
-    void run_pass(std::uint64_t pass, const PhotonSupply&, const StageListener& enter) override {
-        enter(Stage::Direct);
-        direct_.run_pass(pass);
-    }
+    void take(const Pass&) override {}
 
-    std::size_t begin_direct(std::uint64_t pass) override { return direct_.begin_pass(pass); }
-    void add_direct(std::size_t block) override { direct_.add_block(block); }
-
-    Image estimate(const PhotonSupply& photons, const StageListener& enter) override {
-        enter(Stage::Direct);
-        std::vector<Color> direct = direct_.layer();
-        enter(Stage::Gather);
-        report_.map_bytes = photons.bytes_of_all_passes();
-        report_.nonfinite = photons.global_map().nonfinite() + photons.caustic_map().nonfinite();
-        report_.photons_gathered = 0;
+    MethodLayers image(const PhotonsOfAllPasses* photons) override {
+        photons_gathered_ = 0;
         std::fill(radiance_.begin(), radiance_.end(), ColorD(0.0));
-        gather(photons.global_map(), global_);
-        gather(photons.caustic_map(), caustic_);
-        scale_ =
-            context_.scene.total_power / static_cast<double>(std::max<std::uint64_t>(1, photons.paths_of_all_passes()));
-        return make_layers(context_.hit_points, settings_.max_depth, std::move(direct),
-                           to_pixels(
-                               context_.hit_points, [&](std::size_t i) { return radiance_[i]; }, scale_));
+        gather(photons->global, global_);
+        gather(photons->caustic, caustic_);
+        scale_ = context_.scene.total_power / static_cast<double>(std::max<std::uint64_t>(1, photons->paths_emitted));
+        return {.gathered = to_pixels(
+                    context_.hit_points, [&](std::size_t i) { return radiance_[i]; }, scale_)};
     }
 
     /// Radii are those of the global map.
     IntegratorReport report() const override {
-        IntegratorReport report = report_;
-        report.hit_point_bytes = hit_point_bytes(context_.hit_points) + radiance_.size() * sizeof(ColorD) +
-                                 order_.bytes() + global_.bytes() + caustic_.bytes() + direct_.bytes();
+        IntegratorReport report{.photons_gathered = photons_gathered_,
+                                .bytes = radiance_.size() * sizeof(ColorD) + order_.bytes() + global_.bytes() +
+                                         caustic_.bytes()};
         set_radii(
             report, global_.radii.size(), [&](std::size_t i) { return global_.radii[i]; }, context_.scene.unit_length);
         return report;
@@ -90,11 +86,8 @@ public:
         return state;
     }
 
-    /// What was gathered is not kept: every estimate gathers anew.
-    void exchange(StateArchive& archive) override {
-        photonlab::exchange(archive, report_);
-        direct_.exchange(archive);
-    }
+    /// What was gathered is not kept: every image gathers anew.
+    void exchange(StateArchive& archive) override { archive.exchange(photons_gathered_); }
 
 private:
     /// Adds what the photons of one map bring to every hit point.
@@ -116,7 +109,7 @@ private:
                 gathered[block] += sum.count();
             }
         });
-        for (const std::uint64_t count : gathered) report_.photons_gathered += count;
+        for (const std::uint64_t count : gathered) photons_gathered_ += count;
     }
 
     /// The k nearest of each hit point; search.radii become those of the discs to divide by.
@@ -138,19 +131,23 @@ private:
 
     const MethodSettings settings_;
     const IntegratorContext context_;
-    DirectLight direct_;
     const SearchOrder order_;
     Search global_;
     Search caustic_;                // light that came by mirrors and glass alone; apart, since it is so much denser
     std::vector<ColorD> radiance_;  // one a hit point, of the last gather, in shares of all emitted light
     double scale_ = 0.0;            // what makes it radiance
-    IntegratorReport report_;
+    std::uint64_t photons_gathered_ = 0;  // in the last gather
 };
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_photonmapper(const MethodSettings& settings, const IntegratorContext& context) {
-    return std::make_unique<PhotonMapping>(settings, context);
+IntegratorKind photonmapper_kind() {
+    return {.name = "photonmapper",
+            .needs = [](const MethodSettings&) { return Needs{.photons = Needs::Photons::OfAllPasses}; },
+            .settings = {"mode", "k", "radius", "footprints", "max_radius", "caustic_k", "caustic_radius",
+                         "caustic_max_radius", "kernel", "eps", "direct", "direct_samples", "max_depth",
+                         "branch_cutoff", "photons_per_pass"},
+            .make = make_integrator_of<PhotonMapping>};
 }
 
 }  // namespace photonlab

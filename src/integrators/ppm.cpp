@@ -1,4 +1,11 @@
-#include "integrators/ppm.h"
+// Progressive photon mapping: gather radii that shrink as photons accumulate, so that bias and variance vanish together
+// in bounded memory.
+//
+// Each pass makes a density estimate of its own at every hit point, with the radius before it shrinks, and the image is
+// the running mean of these: the same numbers as the 2008 paper's shrinking flux, to rounding, and stable over millions
+// of passes (docs/theory.md, section 1; a test shows it).
+//
+// [Hachisuka, Ogaki & Jensen 2008, "Progressive Photon Mapping"; Knaus & Zwicker 2011]
 
 #include <cassert>
 
@@ -8,6 +15,7 @@
 #include "gather/search_order.h"
 #include "integrators/density_estimate.h"
 #include "integrators/layers.h"
+#include "integrators/registry.h"
 
 namespace photonlab {
 
@@ -20,7 +28,6 @@ public:
     ProgressivePhotonMapping(const MethodSettings& settings, const IntegratorContext& context)
         : settings_(settings),
           context_(context),
-          direct_(context, settings),
           order_(context.hit_points.points),
           statistics_(context.hit_points.points.size()) {
         for (std::size_t i = 0; i < statistics_.size(); ++i) {
@@ -29,50 +36,34 @@ public:
         }
     }
 
-    void run_pass(std::uint64_t pass, const PhotonSupply& photons, const StageListener& enter) override {
-        if (passes_ == 0) begin_at(pass);
+    void take(const Pass& pass) override {
+        if (passes_ == 0) begin_at(pass.number);
         ++passes_;
-        const PhotonMap& map = photons.pass_map();
-        report_.map_bytes = std::max(report_.map_bytes, map.bytes());
-        report_.nonfinite += map.nonfinite();
-
-        enter(Stage::Gather);
         const std::size_t blocks = block_count(statistics_.size(), hit_points_per_block);
         std::vector<std::uint64_t> gathered(blocks, 0);
         parallel_for(blocks, context_.threads, [&](std::size_t block) {
             const BlockRange range = block_range(block, statistics_.size(), hit_points_per_block);
             const std::vector<FluxSum> sums =
-                gather_within(map, context_.scene, context_.hit_points.points, order_, range, settings_,
+                gather_within(*pass.photons, context_.scene, pass.points.points, order_, range, settings_,
                               [&](std::size_t i) { return std::sqrt(statistics_[i].squared_radius); });
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 const FluxSum& sum = sums[i - range.begin];
-                update(statistics_[i], sum, photons.paths_of_pass(), pass);
+                update(statistics_[i], sum, pass);
                 gathered[block] += sum.count();
             }
         });
-        for (const std::uint64_t count : gathered) report_.photons_gathered += count;
-
-        enter(Stage::Direct);
-        direct_.run_pass(pass);
+        for (const std::uint64_t count : gathered) photons_gathered_ += count;
     }
 
-    std::size_t begin_direct(std::uint64_t pass) override { return direct_.begin_pass(pass); }
-    void add_direct(std::size_t block) override { direct_.add_block(block); }
-
-    Image estimate(const PhotonSupply&, const StageListener& enter) override {
-        enter(Stage::Direct);
-        std::vector<Color> direct = direct_.layer();
-        enter(Stage::Gather);
-        return make_layers(context_.hit_points, settings_.max_depth, std::move(direct),
-                           to_pixels(
-                               context_.hit_points, [&](std::size_t i) { return statistics_[i].estimate; },
-                               context_.scene.total_power));
+    MethodLayers image(const PhotonsOfAllPasses*) override {
+        return {.gathered = to_pixels(
+                    context_.hit_points, [&](std::size_t i) { return statistics_[i].estimate; },
+                    context_.scene.total_power)};
     }
 
     IntegratorReport report() const override {
-        IntegratorReport report = report_;
-        report.hit_point_bytes = hit_point_bytes(context_.hit_points) + order_.bytes() +
-                                 statistics_.size() * sizeof(GatherStatistics) + direct_.bytes();
+        IntegratorReport report{.photons_gathered = photons_gathered_,
+                                .bytes = order_.bytes() + statistics_.size() * sizeof(GatherStatistics)};
         set_radii(
             report, statistics_.size(), [&](std::size_t i) { return std::sqrt(statistics_[i].squared_radius); },
             context_.scene.unit_length);
@@ -93,8 +84,7 @@ public:
     void exchange(StateArchive& archive) override {
         archive.exchange(passes_);
         archive.exchange_as_many(statistics_);
-        photonlab::exchange(archive, report_);
-        direct_.exchange(archive);
+        archive.exchange(photons_gathered_);
     }
 
 private:
@@ -108,29 +98,37 @@ private:
     }
 
     /// One pass at one hit point.
-    void update(GatherStatistics& statistics, const FluxSum& sum, std::uint64_t paths, std::uint64_t pass) const {
+    void update(GatherStatistics& statistics, const FluxSum& sum, const Pass& pass) const {
         const double area = pi * statistics.squared_radius;
         take_pass(statistics, settings_.schedule, settings_.alpha,
-                  {.pass = pass,
+                  {.pass = pass.number,
                    .passes = passes_,
                    .found = static_cast<double>(sum.count()),
-                   .estimate = sum.flux() / (area * static_cast<double>(paths))},
+                   .estimate = sum.flux() / (area * static_cast<double>(pass.paths_emitted))},
                   smallest_squared_radius);
     }
 
     const MethodSettings settings_;
     const IntegratorContext context_;
-    DirectLight direct_;
     const SearchOrder order_;
     std::uint64_t passes_ = 0;                  // taken so far, from whichever pass they began at
     std::vector<GatherStatistics> statistics_;  // joined with the hit points by index
-    IntegratorReport report_;
+    std::uint64_t photons_gathered_ = 0;
 };
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_ppm(const MethodSettings& settings, const IntegratorContext& context) {
-    return std::make_unique<ProgressivePhotonMapping>(settings, context);
+IntegratorKind ppm_kind() {
+    return {.name = "ppm",
+            .needs =
+                [](const MethodSettings& settings) {
+                    return Needs{.photons = Needs::Photons::OfPass,
+                                 .passes = settings.schedule == ScheduleName::KnausZwicker ? Needs::Passes::Independent
+                                                                                           : Needs::Passes::Ordered};
+                },
+            .settings = {"schedule", "alpha", "radius", "footprints", "kernel", "eps", "direct", "direct_samples",
+                         "max_depth", "branch_cutoff", "photons_per_pass"},
+            .make = make_integrator_of<ProgressivePhotonMapping>};
 }
 
 }  // namespace photonlab

@@ -7,59 +7,49 @@
 
 #include "core/nearest.h"
 #include "integrators/density_estimate.h"
-#include "integrators/path.h"
-#include "integrators/photonmapper.h"
-#include "integrators/ppm.h"
+#include "integrators/integrator_list.h"
 
 namespace photonlab {
 
 const std::vector<IntegratorKind>& integrator_kinds() {
-    static const std::vector<IntegratorKind> kinds{
-        {"path", PhotonNeed::None, {"max_depth", "branch_cutoff"}, make_path},
-        {"photonmapper",
-         PhotonNeed::AllPassesMaps,
-         {"mode", "k", "radius", "footprints", "max_radius", "caustic_k", "caustic_radius", "caustic_max_radius",
-          "kernel", "eps", "direct", "direct_samples", "max_depth", "branch_cutoff", "photons_per_pass"},
-         make_photonmapper},
-        {"ppm",
-         PhotonNeed::PassMap,
-         {"schedule", "alpha", "radius", "footprints", "kernel", "eps", "direct", "direct_samples", "max_depth",
-          "branch_cutoff", "photons_per_pass"},
-         make_ppm},
-    };
+    static const std::vector<IntegratorKind> kinds = listed_integrator_kinds();
     return kinds;
 }
 
-const IntegratorKind& find_integrator_kind(std::string_view name) {
+const IntegratorKind& find_integrator_kind(std::string_view name, const std::vector<IntegratorKind>& kinds) {
     std::vector<std::string_view> known;
-    for (const IntegratorKind& kind : integrator_kinds()) {
+    for (const IntegratorKind& kind : kinds) {
         if (kind.name == name) return kind;
         known.push_back(kind.name);
     }
     throw InputError(unknown_name("integrator", name, known));
 }
 
+Needs needs_of(const MethodSettings& settings) {
+    return find_integrator_kind(settings.integrator).needs(settings);
+}
+
 bool uses_setting(const MethodSettings& settings, std::string_view field) {
     if (field == "integrator") return true;
     const auto& used = find_integrator_kind(settings.integrator).settings;
     if (std::find(used.begin(), used.end(), field) == used.end()) return false;
-    const bool photonmapper = settings.integrator == "photonmapper";
     if (field == "k" || field == "max_radius" || field == "caustic_k" || field == "caustic_max_radius")
         return settings.mode == GatherMode::Nearest;
     if (field == "footprints") return uses_setting(settings, "radius") && !settings.radius;
-    if ((field == "radius" && photonmapper) || field == "caustic_radius") return settings.mode == GatherMode::Radius;
+    if (field == "radius" || field == "caustic_radius") return settings.mode == GatherMode::Radius;
     if (field == "direct_samples") return settings.direct == DirectMode::Sampled;
     return true;
 }
 
-void require_valid(const MethodSettings& settings) {
+namespace {
+
+void require_in_range(const MethodSettings& settings) {
     const auto require = [](bool valid, const std::string& expectation) {
         if (!valid) throw InputError(expectation);
     };
     const auto is_length = [](const std::optional<double>& length) {
         return !length || (std::isfinite(*length) && *length > 0.0);
     };
-    find_integrator_kind(settings.integrator);
     require_alpha(settings.alpha);
     require(settings.k >= fewest_nearest, "k: expected at least 2 photons, got " + std::to_string(settings.k));
     require(is_length(settings.radius), "radius: expected \"auto\" or a length above 0 in scene units");
@@ -85,8 +75,6 @@ void require_valid(const MethodSettings& settings) {
             fmt::format("photons_per_pass: expected from 1 to {}, got {}", most_photons, settings.photons_per_pass));
 }
 
-namespace {
-
 /// A radius that float32 geometry cannot resolve would give an image that is merely wrong.
 void require_resolvable(std::string_view name, const std::optional<double>& radius, const Scene& scene) {
     if (!radius) return;
@@ -99,6 +87,11 @@ void require_resolvable(std::string_view name, const std::optional<double>& radi
 
 }  // namespace
 
+void require_valid(const MethodSettings& settings) {
+    find_integrator_kind(settings.integrator);
+    require_in_range(settings);
+}
+
 void require_resolvable(const MethodSettings& settings, const Scene& scene) {
     require_resolvable("radius", settings.radius, scene);
     require_resolvable("max_radius", settings.max_radius, scene);
@@ -106,10 +99,11 @@ void require_resolvable(const MethodSettings& settings, const Scene& scene) {
     require_resolvable("caustic_max_radius", settings.caustic_max_radius, scene);
 }
 
-std::unique_ptr<Integrator> make_integrator(const MethodSettings& settings, const IntegratorContext& context) {
-    require_valid(settings);
+std::unique_ptr<Integrator> make_integrator(const IntegratorKind& kind, const MethodSettings& settings,
+                                            const IntegratorContext& context) {
+    require_in_range(settings);
     require_resolvable(settings, context.scene);
-    return find_integrator_kind(settings.integrator).make(settings, context);
+    return kind.make(settings, context);
 }
 
 }  // namespace photonlab

@@ -1,4 +1,5 @@
-// The list of integrators. Adding one: a file with its class, its line in registry.cpp, a test.
+// The list of integrators. Adding one: a file NAME.cpp that defines NAME_kind(), its name in this folder's
+// CMakeLists.txt, and a test.
 
 #pragma once
 
@@ -14,15 +15,25 @@ namespace photonlab {
 
 struct IntegratorKind {
     std::string_view name;
-    PhotonNeed needs;
+    Needs (*needs)(const MethodSettings&);
     std::vector<std::string_view> settings;  ///< fields of MethodSettings that it uses, by their names
     std::unique_ptr<Integrator> (*make)(const MethodSettings&, const IntegratorContext&);
 };
 
 const std::vector<IntegratorKind>& integrator_kinds();
 
+/// What IntegratorKind::make is for a class that is made from settings and context.
+template <typename Class>
+std::unique_ptr<Integrator> make_integrator_of(const MethodSettings& settings, const IntegratorContext& context) {
+    return std::make_unique<Class>(settings, context);
+}
+
 /// The kind called `name`; InputError names the known ones.
-const IntegratorKind& find_integrator_kind(std::string_view name);
+const IntegratorKind& find_integrator_kind(std::string_view name,
+                                           const std::vector<IntegratorKind>& kinds = integrator_kinds());
+
+/// What the method of these settings needs.
+Needs needs_of(const MethodSettings& settings);
 
 /// True when the method uses the field of MethodSettings called `field`, given its other choices as well (k only in
 /// mode "nearest", direct_samples only with direct "sampled", ...).
@@ -34,7 +45,8 @@ void require_valid(const MethodSettings& settings);
 /// Throws InputError when a radius is out of what can be told in the scene.
 void require_resolvable(const MethodSettings& settings, const Scene& scene);
 
-/// Checks the settings and makes the integrator they name.
-std::unique_ptr<Integrator> make_integrator(const MethodSettings& settings, const IntegratorContext& context);
+/// Checks the settings and makes an integrator of the kind.
+std::unique_ptr<Integrator> make_integrator(const IntegratorKind& kind, const MethodSettings& settings,
+                                            const IntegratorContext& context);
 
 }  // namespace photonlab

@@ -3,7 +3,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "integrators/registry.h"
+#include "render/pass_loop.h"
 #include "work.h"
 
 namespace photonlab::benchmarks {
@@ -80,21 +80,16 @@ void NearestGather(benchmark::State& state) {
 }
 
 void WholePass(benchmark::State& state) {
-    const std::unique_ptr<Integrator> ppm = make_integrator(work().method, {work().scene, work().hit_points, seed});
-    PhotonSupply supply;
+    PassLoop ppm(work().scene, work().hit_points, {{.method = work().method, .seed = seed}});
     std::uint64_t pass = 0;
-    for (auto _ : state) {
-        supply.begin_pass(trace_pass(++pass));
-        supply.index_pass();
-        ppm->run_pass(pass, supply, [](Stage) {});
-    }
+    for (auto _ : state) ppm.take(++pass);
     const double hit_points = static_cast<double>(work().hit_points.points.size());
-    const IntegratorReport report = ppm->report();
+    const RunState run = ppm.state_now(0);
     state.counters["paths/s"] =
         Counter(static_cast<double>(work().method.photons_per_pass), Counter::kIsIterationInvariantRate);
     state.counters["queries/s"] = Counter(hit_points, Counter::kIsIterationInvariantRate);
-    state.counters["bytes"] = static_cast<double>(report.map_bytes + report.hit_point_bytes);
-    state.counters["bytes_a_hit_point"] = static_cast<double>(report.hit_point_bytes) / hit_points;
+    state.counters["bytes"] = static_cast<double>(run.map_bytes + run.hit_point_bytes);
+    state.counters["bytes_a_hit_point"] = static_cast<double>(run.hit_point_bytes) / hit_points;
 }
 
 BENCHMARK(PhotonPassStage)->Unit(benchmark::kMillisecond);

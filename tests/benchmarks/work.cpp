@@ -6,7 +6,7 @@
 
 #include "core/parallel.h"
 #include "gather/search_order.h"
-#include "integrators/registry.h"
+#include "render/pass_loop.h"
 #include "scene/loader.h"
 
 namespace photonlab::benchmarks {
@@ -20,8 +20,7 @@ Work make_work() {
     Work work{std::move(scene), std::move(hit_points), {.radius = 5.55}, {}, {}};
     work.method.max_depth = work.scene.max_depth;
 
-    const std::unique_ptr<Integrator> ppm = make_integrator(work.method, {work.scene, work.hit_points, seed});
-    PhotonSupply supply;
+    PassLoop ppm(work.scene, work.hit_points, {{.method = work.method, .seed = seed}});
     for (std::uint64_t pass = 1; pass <= late_pass; ++pass) {
         PhotonPass traced = trace_photons(
             work.scene, {.paths = work.method.photons_per_pass, .seed = seed, .max_depth = work.method.max_depth}, pass,
@@ -35,14 +34,12 @@ Work make_work() {
                 const BlockRange range = block_range(block, points.size(), hit_points_per_block);
                 for (const std::uint8_t place : order.of_block(range)) {
                     const std::size_t i = range.begin + place;
-                    const double radius = ppm->gather_state(i).value().radius / work.scene.unit_length;
+                    const double radius = ppm.integrator(0).gather_state(i).value().radius / work.scene.unit_length;
                     work.queries[which].push_back({points[i].position, points[i].normal, radius});
                 }
             }
         }
-        supply.begin_pass(std::move(traced));
-        supply.index_pass();
-        ppm->run_pass(pass, supply, [](Stage) {});
+        ppm.take(pass, std::move(traced));
     }
     return work;
 }

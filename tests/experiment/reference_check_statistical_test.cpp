@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "integrators/registry.h"
+#include "render/pass_loop.h"
 #include "test_folder.h"
 
 namespace photonlab {
@@ -16,12 +16,10 @@ namespace {
 /// The layers after so many passes of `path`, as a half of a reference has them.
 Image half_of(const Scene& scene, const HitPoints& hit_points, std::uint64_t samples, std::uint64_t seed,
               RandomPurpose purpose) {
-    const auto path =
-        make_integrator({.integrator = "path", .max_depth = scene.max_depth},
-                        {.scene = scene, .hit_points = hit_points, .seed = seed, .path_purpose = purpose});
-    const PhotonSupply none;
-    for (std::uint64_t sample = 1; sample <= samples; ++sample) path->run_pass(sample, none, [](Stage) {});
-    return path->estimate(none, [](Stage) {});
+    PassLoop path(scene, hit_points, {{.method = {.integrator = "path", .max_depth = scene.max_depth}, .seed = seed}},
+                  {.paths = purpose});
+    for (std::uint64_t sample = 1; sample <= samples; ++sample) path.take(sample);
+    return path.image();
 }
 
 // The difference in standard errors, squared and summed over 40 seeds, has a chi-square distribution, were it not that

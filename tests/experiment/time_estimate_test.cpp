@@ -34,7 +34,7 @@ protected:
         scene_.camera.height = resolution.height;
         settings.method.max_depth = 5;
         settings.passes = 64;
-        settings.estimated = {64};
+        settings.shown = {64};
         return estimate_time(scene_, trace_coarse_view(scene_, 4, 1, 1e-4), settings);
     }
 

@@ -40,12 +40,12 @@ ColorD radiance_times_power(const MethodSettings& method, std::vector<Photon> ph
     const HitPoints hit_points = trace_hit_points(scene, 1, 1);
     EXPECT_EQ(hit_points.points.size(), 1u);
     EXPECT_EQ(hit_points.points[0].position, Vector(0.0f));
-    MethodWithPhotons run(method, {scene, hit_points});
+    PassLoop run = loop_of(method, scene, hit_points);
     PhotonPass pass;
     pass.photons = std::move(photons);
     pass.paths_emitted = 1;
-    run.run_pass(1, std::move(pass));
-    return mean_of(run.estimate(), gathered_layer) / scene.total_power;
+    run.take(1, std::move(pass));
+    return mean_of(run.image(), gathered_layer) / scene.total_power;
 }
 
 void expect_radiance(const ColorD& found, const ColorD& flux, double squared_radius, double tolerance = 1e-6) {

@@ -117,7 +117,7 @@ void expect_black(const SceneDescription& description, const std::string& what,
         for (const Layer& layer : result.image.layers)
             for (const Color& pixel : layer.pixels) EXPECT_EQ(pixel, Color(0.0f)) << what << ", " << method.integrator;
         EXPECT_EQ(result.report.photons_gathered, 0u);
-        EXPECT_EQ(result.report.nonfinite, 0u);
+        EXPECT_EQ(result.state.nonfinite_in_maps, 0u);
         for (const double radius : result.radii) EXPECT_TRUE(std::isfinite(radius)) << what;
     }
 }

@@ -32,9 +32,9 @@ TEST(LargePass, OfTenMillionPhotonsHasTheClosedForm) {
     EXPECT_NEAR(static_cast<double>(pass.photons.size()) / (n * landing), 1.0, tolerance_of(landing, n));
 
     const auto estimate = [&](const MethodSettings& method) {
-        MethodWithPhotons run(method, {scene, hit_points});
-        run.run_pass(1, pass);
-        return mean_of(run.estimate(), gathered_layer);
+        PassLoop run = loop_of(method, scene, hit_points);
+        run.take(1, pass);
+        return mean_of(run.image(), gathered_layer);
     };
     const auto expect_near = [](const ColorD& found, const ColorD& expected, double tolerance, const char* what) {
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c] / expected[c], 1.0, tolerance) << what << ", channel " << c;

@@ -122,7 +122,7 @@ TEST(Radius, BelowWhatFloatPositionsResolveIsRefused) {
         scaled.point_lights.clear();
         const Scene scene = build_scene(scaled);
         const HitPoints hit_points = trace_hit_points(scene, 1, 1);
-        const auto make = [&](const MethodSettings& method) { make_integrator(method, {scene, hit_points}); };
+        const auto make = [&](const MethodSettings& method) { loop_of(method, scene, hit_points); };
         for (const double share : {9e-8, 1e-12, 1e-18, 1e-200, 2e18, 1e300}) {
             for (const std::string integrator : {"ppm", "photonmapper"}) try {
                     make({.integrator = integrator, .radius = share * unit});

@@ -32,65 +32,74 @@ protected:
         return method().integrator == "path" ? PhotonPass{}
                                              : trace_photons(scene_, photon_settings(method(), 5), pass, 1);
     }
-    MethodWithPhotons fresh() const { return MethodWithPhotons(method(), {scene_, hit_points_, 5, 1}); }
+    PassLoop fresh() const { return loop_of(method(), scene_, hit_points_, {.seed = 5}); }
 
     Scene scene_;
     HitPoints hit_points_;
 };
 
-std::string saved(Integrator& integrator) {
+template <typename Exchange>
+std::string saved(const Exchange& exchange) {
     std::ostringstream stream;
     StateArchive archive(stream);
-    integrator.exchange(archive);
+    exchange(archive);
     return stream.str();
 }
 
-void restore(Integrator& integrator, const std::string& bytes) {
+std::string saved(PassLoop& loop) {
+    return saved([&](StateArchive& archive) { loop.exchange(0, archive); });
+}
+
+/// The method's own state, in which there are no times.
+std::string saved_of_method(PassLoop& loop) {
+    return saved([&](StateArchive& archive) { loop.integrator(0).exchange(archive); });
+}
+
+void restore(PassLoop& loop, const std::string& bytes) {
     std::istringstream stream(bytes);
     StateArchive archive(stream, bytes.size());
-    integrator.exchange(archive);
+    loop.exchange(0, archive);
     EXPECT_EQ(archive.bytes_left(), 0u);
 }
 
 TEST_P(Continuation, GivesTheSameBits) {
     constexpr std::uint64_t passes = 8;
     for (const std::uint64_t interrupted : {0, 1, 5}) {
-        MethodWithPhotons whole = fresh();
-        std::string state = saved(*whole.integrator);
+        PassLoop whole = fresh();
+        std::string state = saved(whole);
         for (std::uint64_t pass = 1; pass <= passes; ++pass) {
-            whole.run_pass(pass, photons(pass));
-            if (pass == 2) whole.estimate();
-            if (pass == interrupted) state = saved(*whole.integrator);
+            whole.take(pass, photons(pass));
+            if (pass == 2) whole.image();
+            if (pass == interrupted) state = saved(whole);
         }
-        const Image expected = whole.estimate();
+        const Image expected = whole.image();
 
-        MethodWithPhotons continued = fresh();
-        restore(*continued.integrator, state);
-        for (std::uint64_t pass = 1; pass <= interrupted; ++pass) {  // photons are traced again
-            continued.photons.begin_pass(photons(pass));
-            continued.photons.add_pass();
-        }
-        for (std::uint64_t pass = interrupted + 1; pass <= passes; ++pass) continued.run_pass(pass, photons(pass));
-        const Image image = continued.estimate();
+        PassLoop continued = fresh();
+        restore(continued, state);
+        for (std::uint64_t pass = 1; pass <= passes; ++pass) continued.take(pass, photons(pass));
+        const Image image = continued.image();
         ASSERT_EQ(image.layers.size(), expected.layers.size());
         for (std::size_t layer = 0; layer < image.layers.size(); ++layer)
             EXPECT_TRUE(image.layers[layer].pixels == expected.layers[layer].pixels) << image.layers[layer].name;
 
-        const IntegratorReport a = continued.integrator->report();
-        const IntegratorReport b = whole.integrator->report();
-        EXPECT_EQ(a.photons_gathered, b.photons_gathered);
+        const RunState a = continued.state_now(0);
+        const RunState b = whole.state_now(0);
+        EXPECT_EQ(a.pass, passes);
+        EXPECT_EQ(a.photons_stored, b.photons_stored);
+        EXPECT_EQ(a.report.photons_gathered, b.report.photons_gathered);
         EXPECT_EQ(a.map_bytes, b.map_bytes);
-        EXPECT_EQ(a.nonfinite, b.nonfinite);
-        EXPECT_EQ(a.radius_mean, b.radius_mean);
-        EXPECT_EQ(saved(*continued.integrator), saved(*whole.integrator));
+        EXPECT_EQ(a.nonfinite_in_maps, b.nonfinite_in_maps);
+        EXPECT_EQ(a.report.radius_mean, b.report.radius_mean);
+        EXPECT_EQ(saved_of_method(continued), saved_of_method(whole));
     }
 }
 
 TEST_P(Continuation, RefusesTheStateOfOtherHitPoints) {
     const HitPoints fewer = trace_hit_points(build_scene(room(8, 6)), 1, 1);
-    const auto other = make_integrator(method(), {scene_, fewer, 5, 1});
-    const std::string state = saved(*other);
-    EXPECT_THROW(restore(*fresh().integrator, state), InputError);
+    PassLoop other = loop_of(method(), scene_, fewer, {.seed = 5});
+    const std::string state = saved(other);
+    PassLoop loop = fresh();
+    EXPECT_THROW(restore(loop, state), InputError);
 }
 
 INSTANTIATE_TEST_SUITE_P(OfEveryMethod, Continuation, ::testing::ValuesIn(methods()), [](const auto& tested) {

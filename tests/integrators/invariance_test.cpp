@@ -165,21 +165,20 @@ TEST(Invariance, SceneMovedGivesTheSameImage) {
 TEST(Invariance, PassesLookedAtDoNotChangeTheLast) {
     for (const Method& method : methods())
         expect_same_bits(image_of(changed_room(1.0), method, {.passes = 5}),
-                         image_of(changed_room(1.0), method, {.passes = 5, .estimate_every_pass = true}), 1.0,
-                         method.name);
+                         image_of(changed_room(1.0), method, {.passes = 5, .show_every_pass = true}), 1.0, method.name);
 }
 
 TEST(Invariance, LookingBeforeTheFirstPassShowsEmissionAndDirectLightAndChangesNothing) {
     const Scene scene = build_scene(changed_room(1.0));
     const HitPoints hit_points = trace_hit_points(scene, 1, 1);
     for (const Method& method : methods()) {
-        MethodWithPhotons run(method.settings, {scene, hit_points});
-        const Image before = run.estimate();
+        PassLoop run = loop_of(method.settings, scene, hit_points);
+        const Image before = run.image();
         EXPECT_EQ(mean_of(before, gathered_layer), ColorD(0.0)) << method.name;
         EXPECT_EQ(mean_of(before, direct_layer).x > 0.0, method.settings.direct == DirectMode::Sampled) << method.name;
         for (std::uint64_t pass = 1; pass <= 2; ++pass)
-            run.run_pass(pass, trace_photons(scene, photon_settings(method.settings, 1), pass, 1));
-        expect_same_bits(render(scene, hit_points, method.settings, {.passes = 2}).image, run.estimate(), 1.0,
+            run.take(pass, trace_photons(scene, photon_settings(method.settings, 1), pass, 1));
+        expect_same_bits(render(scene, hit_points, method.settings, {.passes = 2}).image, run.image(), 1.0,
                          method.name);
     }
 }

@@ -40,14 +40,14 @@ TEST(ProgressivePhotonMapping, IsTheShrinkingFluxOfItsPaper) {
     ASSERT_EQ(hit_points.points.size(), 1u);
     for (const double alpha : {0.1, 0.5, 0.7, 0.95, 1.0}) {
         const MethodSettings method = progressive(ScheduleName::Hachisuka, alpha);
-        MethodWithPhotons run(method, {scene, hit_points});
+        PassLoop run = loop_of(method, scene, hit_points);
         double squared_radius = gather_radius * gather_radius / (scene.unit_length * scene.unit_length);
         double count = 0.0;
         ColorD flux(0.0);
         std::uint64_t paths = 0;
         int empty_passes = 0;
         for (std::uint64_t pass = 1; pass <= 200; ++pass) {
-            EXPECT_NEAR(*run.integrator->report().radius_mean, std::sqrt(squared_radius) * scene.unit_length, 1e-9);
+            EXPECT_NEAR(*run.state_now(0).report.radius_mean, std::sqrt(squared_radius) * scene.unit_length, 1e-9);
             const PhotonPass photons = trace_photons(scene, photon_settings(method, 1), pass, 1);
             const FluxSum found = gather_at_first(scene, hit_points, photons, std::sqrt(squared_radius));
             paths += photons.paths_emitted;
@@ -59,9 +59,9 @@ TEST(ProgressivePhotonMapping, IsTheShrinkingFluxOfItsPaper) {
                 squared_radius *= shrink;
                 count += alpha * m;
             }
-            run.run_pass(pass, photons);
+            run.take(pass, photons);
             const ColorD radiance = flux * (scene.total_power / (pi * squared_radius * static_cast<double>(paths)));
-            const ColorD estimate = mean_of(run.estimate(), gathered_layer);
+            const ColorD estimate = mean_of(run.image(), gathered_layer);
             for (int c = 0; c < 3; ++c)
                 ASSERT_NEAR(estimate[c], radiance[c], 1e-6 * radiance[c]) << alpha << " pass " << pass;
         }
@@ -98,9 +98,9 @@ TEST(ProgressivePhotonMapping, WithAlphaOneIsTheAverageOfPhotonMapsOfOneRadius) 
             method.integrator = "photonmapper";
             std::vector<ColorD> average(400, ColorD(0.0));
             for (std::uint64_t pass = 1; pass <= passes; ++pass) {
-                MethodWithPhotons run(method, {scene, hit_points});
-                run.run_pass(1, trace_photons(scene, photon_settings(method, 1), pass, 1));
-                const Image image = run.estimate();
+                PassLoop run = loop_of(method, scene, hit_points);
+                run.take(1, trace_photons(scene, photon_settings(method, 1), pass, 1));
+                const Image image = run.image();
                 for (std::size_t i = 0; i < average.size(); ++i)
                     average[i] += ColorD(image.find(gathered_layer)->at(i)) / static_cast<double>(passes);
             }
@@ -160,9 +160,9 @@ TEST(PhotonMapping, CountsThePhotonsThatItGathered) {
                                     .radius = gather_radius,
                                     .direct = DirectMode::Photons,
                                     .photons_per_pass = 2000};
-        const Rendering result = render(scene, hit_points, method, {.passes = 4, .estimate_every_pass = true});
+        const Rendering result = render(scene, hit_points, method, {.passes = 4, .show_every_pass = true});
         EXPECT_EQ(result.report.photons_gathered, expected) << integrator;
-        EXPECT_EQ(result.report.nonfinite, 0u);
+        EXPECT_EQ(result.state.nonfinite_in_maps, 0u);
     }
 }
 
@@ -170,7 +170,7 @@ TEST(InitialRadius, IsThreeFootprintsUnlessGivenInSceneUnits) {
     const Scene scene = build_scene(room(20, 20));
     const HitPoints hit_points = trace_hit_points(scene, 1, 1);
     const auto report_of = [&](const MethodSettings& method) {
-        return make_integrator(method, {scene, hit_points})->report();
+        return loop_of(method, scene, hit_points).state(0).report;
     };
     double mean = 0.0;
     for (const float footprint : hit_points.footprints)

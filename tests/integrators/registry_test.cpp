@@ -45,7 +45,7 @@ TEST(Registry, RefusesValuesOutOfRangeAndSaysWhatItExpects) {
 TEST(Registry, MakesNothingFromRefusedSettings) {
     const Scene scene = build_scene(room(2, 2));
     const HitPoints hit_points = trace_hit_points(scene, 1, 1);
-    EXPECT_THROW(make_integrator({.alpha = 2.0}, {scene, hit_points}), InputError);
+    EXPECT_THROW(make_integrator(find_integrator_kind("ppm"), {.alpha = 2.0}, {scene, hit_points}), InputError);
 }
 
 TEST(Registry, KnowsWhichSettingsAMethodUses) {

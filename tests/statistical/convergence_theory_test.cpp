@@ -17,7 +17,7 @@
 
 #include <array>
 
-#include "experiment/runner.h"
+#include "render/run_methods.h"
 #include "tests/statistical/scenes.h"
 #include "tests/statistical/significance.h"
 
@@ -86,7 +86,7 @@ Values measure() {
             run.method.photons_per_pass = paths;
             run.seed = seed;
             run.passes = recorded.back();
-            run.estimated = recorded;
+            run.shown = recorded;
             together.push_back(run);
         }
         run_methods(scene, hit_points, together, [&](std::size_t method, const RunState& state, const Image& image) {

@@ -1,4 +1,4 @@
-// A method run on a scene for some passes, as the program's runner does it but without clocks, files or records.
+// A method run on a scene for some passes, by the program's own loop but without files or records.
 
 #pragma once
 
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "integrators/registry.h"
+#include "render/pass_loop.h"
 #include "transport/camera_pass.h"
 #include "transport/photons.h"
 
@@ -17,16 +18,15 @@ struct RenderOptions {
     int threads = 1;
     int samples_per_pixel = 1;
     RandomPurpose path_purpose = RandomPurpose::CameraPaths;
-    bool estimate_every_pass = false;  ///< ask for the image after every pass, not only after the last
+    bool show_every_pass = false;  ///< ask for the image after every pass, not only after the last
 };
 
 struct Rendering {
     Image image;
+    RunState state;
     IntegratorReport report;
     std::vector<double> radii;  ///< scene units, mean over hit points, before each pass; empty for `path`
 };
-
-inline const StageListener no_listener = [](Stage) {};
 
 inline PhotonSettings photon_settings(const MethodSettings& method, std::uint64_t seed) {
     return {.paths = method.photons_per_pass,
@@ -35,42 +35,24 @@ inline PhotonSettings photon_settings(const MethodSettings& method, std::uint64_
             .store_direct = method.direct == DirectMode::Photons};
 }
 
-/// An integrator and its photons.
-struct MethodWithPhotons {
-    std::unique_ptr<Integrator> integrator;
-    PhotonSupply photons;
-
-    MethodWithPhotons(const MethodSettings& method, const IntegratorContext& context)
-        : integrator(make_integrator(method, context)) {}
-
-    void run_pass(std::uint64_t pass, PhotonPass traced) {
-        photons.begin_pass(std::move(traced));
-        photons.add_pass();
-        photons.index_pass();
-        integrator->run_pass(pass, photons, no_listener);
-        photons.end_pass();
-    }
-
-    Image estimate() {
-        photons.index_all_passes();
-        return integrator->estimate(photons, no_listener);
-    }
-};
+/// A loop of one method.
+inline PassLoop loop_of(const MethodSettings& method, const Scene& scene, const HitPoints& hit_points,
+                        const RenderOptions& options = {}) {
+    return PassLoop(scene, hit_points, {{.method = method, .seed = options.seed, .threads = options.threads}},
+                    {.paths = options.path_purpose});
+}
 
 inline Rendering render(const Scene& scene, const HitPoints& hit_points, const MethodSettings& method,
                         const RenderOptions& options) {
-    MethodWithPhotons run(method, {scene, hit_points, options.seed, options.threads, options.path_purpose});
-    const bool needs_photons = find_integrator_kind(method.integrator).needs != PhotonNeed::None;
+    PassLoop loop = loop_of(method, scene, hit_points, options);
     Rendering result;
     for (std::uint64_t pass = 1; pass <= options.passes; ++pass) {
-        if (const auto radius = run.integrator->report().radius_mean) result.radii.push_back(*radius);
-        run.run_pass(pass, needs_photons
-                               ? trace_photons(scene, photon_settings(method, options.seed), pass, options.threads)
-                               : PhotonPass{});
-        if (options.estimate_every_pass) result.image = run.estimate();
+        if (const auto radius = loop.state_now(0).report.radius_mean) result.radii.push_back(*radius);
+        loop.take(pass);
+        if (options.show_every_pass || pass == options.passes) result.image = loop.image();
     }
-    if (!options.estimate_every_pass) result.image = run.estimate();
-    result.report = run.integrator->report();
+    result.state = loop.state_now(0);
+    result.report = result.state.report;
     return result;
 }
 

@@ -11,28 +11,26 @@
 #include <vector>
 
 #include "gather/photon_map.h"
+#include "integrators/integrator.h"
 #include "transport/photons.h"
 
 namespace photonlab {
-
-/// What a method gathers.
-enum class PhotonNeed { None, PassMap, AllPassesMaps };
 
 class PhotonSupply {
 public:
     void begin_pass(PhotonPass photons);
 
-    /// Adds the photons of the pass to those of all passes: PhotonNeed::AllPassesMaps, in every pass.
+    /// Adds the photons of the pass to those of all passes: Needs::Photons::OfAllPasses, in every pass.
     void add_pass();
 
-    /// Turns the photons of the pass into a map: PhotonNeed::PassMap, before a method's run_pass(). After add_pass(),
-    /// for they are moved, not copied.
+    /// Turns the photons of the pass into a map: Needs::Photons::OfPass. After add_pass(), for they are moved, not
+    /// copied.
     void index_pass();
 
     /// Frees the photons of the pass and their map, so that they are gone before the next pass is traced.
     void end_pass();
 
-    /// Indexes the photons of all passes: PhotonNeed::AllPassesMaps, before a method's estimate().
+    /// Indexes the photons of all passes: Needs::Photons::OfAllPasses, before an image is asked for.
     void index_all_passes();
 
     /// Frees the maps of index_all_passes(), which are large; the photons stay.
@@ -41,11 +39,8 @@ public:
     std::uint64_t paths_of_pass() const { return pass_.paths_emitted; }
     const PhotonMap& pass_map() const { return pass_map_.value(); }
 
-    std::uint64_t paths_of_all_passes() const { return all_paths_; }
-    const PhotonMap& global_map() const { return global_map_.value(); }  ///< all but caustic photons
-    const PhotonMap& caustic_map() const {
-        return caustic_map_.value();
-    }                                           ///< light that came by mirrors and glass alone
+    /// After index_all_passes().
+    PhotonsOfAllPasses all_passes() const { return {global_map_.value(), caustic_map_.value(), all_paths_}; }
     std::uint64_t bytes_of_all_passes() const;  ///< photons, and maps while there are any
 
 private:

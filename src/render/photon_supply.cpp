@@ -1,4 +1,4 @@
-#include "integrators/photon_supply.h"
+#include "render/photon_supply.h"
 
 namespace photonlab {
 

@@ -1,4 +1,4 @@
-#include "experiment/runner.h"
+#include "render/run_methods.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "integrators/registry.h"
-#include "test_folder.h"
+#include "tests/experiment/test_folder.h"
 
 namespace photonlab {
 namespace {
@@ -23,10 +23,10 @@ protected:
         Image last;
         RunState final_state;
     };
-    Outcome run(MethodSettings method, std::vector<std::uint64_t> estimated, int threads = 1) {
+    Outcome run(MethodSettings method, std::vector<std::uint64_t> shown, int threads = 1) {
         method.photons_per_pass = 500;
         Outcome outcome;
-        outcome.final_state = run_methods(scene_, hit_points_, {{method, 3, 6, threads, std::move(estimated)}},
+        outcome.final_state = run_methods(scene_, hit_points_, {{method, 3, 6, threads, std::move(shown)}},
                                           [&](std::size_t, const RunState& state, const Image& image) {
                                               outcome.states[state.pass] = state;
                                               outcome.last = image;
@@ -118,7 +118,7 @@ TEST_F(Runner, MethodsThatShareTheirPhotonsGiveTheBitsThatTheyGiveAlone) {
         expect_same_bits(images[i], alone.last);
         EXPECT_EQ(states[i].photons_stored, alone.final_state.photons_stored);
         EXPECT_EQ(states[i].report.photons_gathered, alone.final_state.report.photons_gathered);
-        EXPECT_EQ(states[i].report.map_bytes, alone.final_state.report.map_bytes);
+        EXPECT_EQ(states[i].map_bytes, alone.final_state.map_bytes);
     }
 }
 
@@ -176,7 +176,7 @@ TEST_F(Runner, OnlyMethodsWithTheSamePhotonsHitPointsAndPassesCanRunTogether) {
     EXPECT_FALSE(can_together([](RunSettings& other) { other.method.branch_cutoff = 0.01; }));
     EXPECT_FALSE(can_together([](RunSettings& other) { other.seed = 4; }));
     EXPECT_FALSE(can_together([](RunSettings& other) { other.passes = 7; }));
-    EXPECT_FALSE(can_together([](RunSettings& other) { other.estimated = {1, 6}; }));
+    EXPECT_FALSE(can_together([](RunSettings& other) { other.shown = {1, 6}; }));
 }
 
 TEST_F(Runner, TellsWhatIsGatheredAtAHitPoint) {

@@ -1,0 +1,262 @@
+#include "render/pass_loop.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "core/parallel.h"
+#include "transport/camera_pass.h"
+
+namespace photonlab {
+
+namespace {
+
+PhotonSettings photons_of(const RunSettings& settings, RandomPurpose purpose) {
+    return {.paths = settings.method.photons_per_pass,
+            .seed = settings.seed,
+            .max_depth = settings.method.max_depth,
+            .store_direct = settings.method.direct == DirectMode::Photons,
+            .purpose = purpose};
+}
+
+LoopLayerSettings layers_of(const RunSettings& settings, const Needs& needs, RandomPurpose purpose) {
+    const bool samples = needs.direct == Needs::Direct::ByLoop && settings.method.direct == DirectMode::Sampled;
+    return {.points = needs.points,
+            .direct_samples = samples ? settings.method.direct_samples : 0,
+            .max_depth = settings.method.max_depth,
+            .seed = settings.seed,
+            .threads = settings.threads,
+            .direct_purpose = purpose};
+}
+
+/// What a method's own part of a pass is.
+Stage stage_of(const Needs& needs) {
+    return needs.photons == Needs::Photons::None ? Stage::Trace : Stage::Gather;
+}
+
+}  // namespace
+
+bool can_run_together(const RunSettings& a, const RunSettings& b) {
+    const auto photons = [](const RunSettings& settings) { return photons_of(settings, RandomPurpose::PhotonPaths); };
+    const auto traces = [](const RunSettings& settings) {
+        return needs_of(settings.method).photons != Needs::Photons::None;
+    };
+    return traces(a) && traces(b) && photons(a) == photons(b) && a.passes == b.passes && a.threads == b.threads &&
+           a.shown == b.shown && a.method.branch_cutoff == b.method.branch_cutoff;
+}
+
+PassLoop::PassLoop(const Scene& scene, const HitPoints& hit_points, const std::vector<RunSettings>& settings,
+                   const LoopPurposes& purposes, const std::vector<IntegratorKind>& kinds)
+    : scene_(scene),
+      hit_points_(hit_points),
+      photon_settings_(photons_of(settings.at(0), purposes.photons)),
+      branch_cutoff_(settings[0].method.branch_cutoff),
+      threads_(settings[0].threads) {
+    for (const RunSettings& one : settings) {
+        assert(settings.size() == 1 || can_run_together(settings[0], one));
+        const IntegratorKind& kind = find_integrator_kind(one.method.integrator, kinds);
+        const Needs needs = kind.needs(one.method);
+        Method method{make_integrator(kind, one.method, {scene, hit_points, one.seed, one.threads, purposes.paths}),
+                      needs,
+                      LoopLayers(scene, hit_points, layers_of(one, needs, purposes.direct)),
+                      {},
+                      {}};
+        describe(method, method.state);
+        method.state.initial_radius = method.state.report.radius_mean;
+        methods_.push_back(std::move(method));
+    }
+}
+
+void PassLoop::take(std::uint64_t pass) {
+    PhotonPass traced;
+    if (keeps_all_photons() || is_any_due(pass, Needs::Photons::OfPass)) trace(pass, traced);
+    take(pass, std::move(traced));
+}
+
+void PassLoop::take(std::uint64_t pass, PhotonPass traced) {
+    for (Method& method : methods_) {
+        if (!is_due(method, pass)) continue;
+        method.state.paths_emitted += traced.paths_emitted;
+        method.state.photons_stored += traced.photons.size();
+        method.state.paths_cut += traced.paths_cut;
+        method.state.power_cut += traced.power_cut;
+        method.state.nonfinite_photons += traced.nonfinite;
+    }
+    make_points(pass);
+    photons_.begin_pass(std::move(traced));
+    if (keeps_all_photons()) {
+        const StageTimes adding = timed(Stage::Build, [&] { photons_.add_pass(); });
+        for (Method& method : methods_)
+            if (is_due(method, pass) && method.needs.photons == Needs::Photons::OfAllPasses)
+                method.passes_alone += adding;
+    }
+    if (is_any_due(pass, Needs::Photons::OfPass)) index_and_light(pass);
+    for (Method& method : methods_)
+        if (is_due(method, pass)) take(method, pass);
+    photons_.end_pass();
+    new_points_.reset();
+}
+
+void PassLoop::trace(std::uint64_t pass, PhotonPass& traced) {
+    const StageTimes tracing =
+        timed(Stage::Trace, [&] { traced = trace_photons(scene_, photon_settings_, pass, threads_); });
+    for (Method& method : methods_)
+        if (is_due(method, pass)) method.passes_alone += tracing;
+}
+
+void PassLoop::make_points(std::uint64_t pass) {
+    const auto wants = [&](const Method& method) {
+        return is_due(method, pass) && method.needs.points == Needs::Points::New;
+    };
+    if (!std::any_of(methods_.begin(), methods_.end(), wants)) return;
+    const StageTimes making = timed(Stage::Points, [&] {
+        new_points_ = trace_hit_points(scene_, hit_points_.samples_per_pixel, threads_, branch_cutoff_);
+    });
+    for (Method& method : methods_)
+        if (wants(method)) method.passes_alone += making;
+}
+
+/// Indexes the photons of the pass and samples the direct light of the methods that gather them, which needs no
+/// photons: FLANN builds on one thread, and the others would wait for it.
+void PassLoop::index_and_light(std::uint64_t pass) {
+    struct DirectBlock {
+        std::size_t gathering;
+        std::size_t block;
+    };
+    std::vector<Method*> gathering;
+    std::vector<DirectBlock> blocks;
+    for (Method& method : methods_) {
+        if (method.needs.photons != Needs::Photons::OfPass || !is_due(method, pass)) continue;
+        const std::size_t count = method.layers.begin_pass(pass, points_of(method));
+        for (std::size_t block = 0; block < count; ++block) blocks.push_back({gathering.size(), block});
+        gathering.push_back(&method);
+    }
+
+    OverlappedWork work;
+    work.direct_cpu.assign(gathering.size(), 0.0);
+    std::vector<double> cpu_of(blocks.size());
+    const double began = steady_seconds();
+    parallel_for(1 + blocks.size(), threads_, [&](std::size_t item) {
+        const double cpu_began = thread_cpu_seconds();
+        if (item == 0) {
+            photons_.index_pass();
+            work.build_seconds = steady_seconds() - began;
+            work.build_cpu = thread_cpu_seconds() - cpu_began;
+        } else {
+            const DirectBlock& direct = blocks[item - 1];
+            gathering[direct.gathering]->layers.add_block(direct.block);
+            cpu_of[item - 1] = thread_cpu_seconds() - cpu_began;
+        }
+    });
+    work.seconds = steady_seconds() - began;
+    for (std::size_t i = 0; i < blocks.size(); ++i) work.direct_cpu[blocks[i].gathering] += cpu_of[i];
+    for (std::size_t i = 0; i < gathering.size(); ++i) gathering[i]->passes_alone += times_alone(work, i);
+}
+
+void PassLoop::light(Method& method, std::uint64_t pass) {
+    const std::size_t blocks = method.layers.begin_pass(pass, points_of(method));
+    parallel_for(blocks, threads_, [&](std::size_t block) { method.layers.add_block(block); });
+}
+
+void PassLoop::take(Method& method, std::uint64_t pass) {
+    const PhotonMap* map = nullptr;
+    if (method.needs.photons == Needs::Photons::OfPass) {
+        map = &photons_.pass_map();
+        method.state.map_bytes = std::max(method.state.map_bytes, map->bytes());
+        method.state.nonfinite_in_maps += map->nonfinite();
+    } else {
+        method.passes_alone += timed(Stage::Direct, [&] { light(method, pass); });
+    }
+    method.layers.end_pass();
+    method.passes_alone += timed(stage_of(method.needs), [&] {
+        method.integrator->take({pass, points_of(method), map, photons_.paths_of_pass()});
+    });
+    method.state.pass = pass;
+    method.state.times = method.passes_alone;
+}
+
+StageTimes PassLoop::begin_images(const std::vector<std::size_t>& which) {
+    const bool are_wanted = std::any_of(which.begin(), which.end(), [&](std::size_t method) {
+        return methods_[method].needs.photons == Needs::Photons::OfAllPasses;
+    });
+    return are_wanted ? timed(Stage::Build, [&] { photons_.index_all_passes(); }) : StageTimes{};
+}
+
+Image PassLoop::image(std::size_t index, const StageTimes& indexing) {
+    Method& method = methods_[index];
+    method.state.times = method.passes_alone;
+    std::optional<PhotonsOfAllPasses> all_passes;
+    if (method.needs.photons == Needs::Photons::OfAllPasses) {
+        all_passes.emplace(photons_.all_passes());
+        method.state.times += indexing;
+        method.state.map_bytes = photons_.bytes_of_all_passes();
+        method.state.nonfinite_in_maps = all_passes->global.nonfinite() + all_passes->caustic.nonfinite();
+    }
+    std::vector<Color> direct;
+    MethodLayers own;
+    method.state.times += timed(Stage::Direct, [&] { direct = method.layers.direct(); });
+    method.state.times +=
+        timed(stage_of(method.needs), [&] { own = method.integrator->image(all_passes ? &*all_passes : nullptr); });
+    if (method.needs.direct == Needs::Direct::ByItself) direct = std::move(own.direct);
+    describe(method, method.state);
+    return {hit_points_.width,
+            hit_points_.height,
+            {{std::string(emission_layer), method.layers.emission()},
+             {std::string(direct_layer), std::move(direct)},
+             {std::string(gathered_layer), std::move(own.gathered)}}};
+}
+
+Image PassLoop::image() {
+    assert(methods_.size() == 1);
+    Image image;
+    show({0}, [&](std::size_t, Image shown) { image = std::move(shown); });
+    return image;
+}
+
+void PassLoop::describe(const Method& method, RunState& state) const {
+    state.report = method.integrator->report();
+    state.hit_point_bytes = photonlab::hit_point_bytes(hit_points_) + state.report.bytes + method.layers.bytes();
+}
+
+RunState PassLoop::state_now(std::size_t method) const {
+    RunState state = methods_[method].state;
+    describe(methods_[method], state);
+    return state;
+}
+
+void PassLoop::exchange(std::size_t index, StateArchive& archive) {
+    Method& method = methods_[index];
+    RunState& state = method.state;
+    archive.exchange(state.pass);
+    archive.exchange(state.paths_emitted);
+    archive.exchange(state.photons_stored);
+    archive.exchange(state.paths_cut);
+    archive.exchange(state.power_cut);
+    archive.exchange(state.nonfinite_photons);
+    archive.exchange(state.nonfinite_in_maps);
+    archive.exchange(state.map_bytes);
+    archive.exchange(method.passes_alone);
+    method.layers.exchange(archive);
+    method.integrator->exchange(archive);
+}
+
+bool PassLoop::is_due(const Method& method, std::uint64_t pass) const {
+    return method.state.pass + 1 == pass ||
+           (method.state.pass == 0 && method.needs.passes == Needs::Passes::Independent);
+}
+
+bool PassLoop::is_any_due(std::uint64_t pass, Needs::Photons photons) const {
+    return std::any_of(methods_.begin(), methods_.end(),
+                       [&](const Method& method) { return method.needs.photons == photons && is_due(method, pass); });
+}
+
+/// Photons of all passes are kept from the first on, also while a method that was restored waits for its pass.
+bool PassLoop::keeps_all_photons() const {
+    return std::any_of(methods_.begin(), methods_.end(),
+                       [](const Method& method) { return method.needs.photons == Needs::Photons::OfAllPasses; });
+}
+
+const HitPoints& PassLoop::points_of(const Method& method) const {
+    return method.needs.points == Needs::Points::New ? *new_points_ : hit_points_;
+}
+
+}  // namespace photonlab
