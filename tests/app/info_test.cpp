@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "integrators/integrator.h"
-#include "integrators/registry.h"
+#include "render/pass_loop.h"
 #include "scene/loader.h"
 #include "tests/app/program.h"
 #include "transport/photons.h"
@@ -26,9 +26,9 @@ TEST_F(Info, TheAutomaticRadiusIsTheOneThatMethodsBeginWith) {
     for (const Resolution resolution : {Resolution{12, 8}, Resolution{31, 17}, Resolution{1, 1}}) {
         const Scene scene = build_scene(load_scene_file(folder_ / "walls/scene.xml"), resolution);
         const HitPoints hit_points = trace_hit_points(scene, 1, 1);
-        const auto method = make_integrator(MethodSettings{}, {.scene = scene, .hit_points = hit_points});
+        const PassLoop loop(scene, hit_points, {RunSettings{}});
         const std::string said = info({"--resolution", fmt::format("{}x{}", resolution.width, resolution.height)});
-        const std::string expected = fmt::format("\nauto radius {:.6g} in the mean", *method->report().radius_mean);
+        const std::string expected = fmt::format("\nauto radius {:.6g} in the mean", *loop.state(0).report.radius_mean);
         EXPECT_NE(said.find(expected), std::string::npos) << expected << said;
     }
 }
