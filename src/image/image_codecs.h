@@ -1,5 +1,6 @@
 // Image files by OpenImageIO, in a shared library of its own that is loaded when the first such file is read or
-// written: OpenImageIO brings some 250 libraries, whose start takes longer than a small render.
+// written: OpenImageIO brings some 250 libraries, whose start takes longer than a small render. It is looked for beside
+// the program, so that the two can be moved together.
 
 #pragma once
 
