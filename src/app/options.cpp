@@ -62,7 +62,7 @@ const FileKind* kind_named(const std::string& name) {
 
 std::string require_folder_name(const std::string& text) {
     const FileKind* kind = kind_named(text);
-    if (!kind || std::filesystem::is_directory(text)) return require_text(text);
+    if (!kind || std::filesystem::is_directory(text)) return "";
     return fmt::format("expected the name of a folder, got \"{}\", that of a file of {}", text, kind->name);
 }
 

@@ -65,8 +65,7 @@ void add_run_command(CLI::App& app) {
     command->add_option("EXPERIMENT", options->experiment, "experiment file (TOML)")->required();
     command->add_option("-o", options->output, "folder for results [results/EXPERIMENT]")->check(require_folder_name);
     command->add_flag("--list", options->list, "print the runs with an estimate of time and memory, and run nothing");
-    command->add_option("--only", options->only, "only runs of this name, or that match this shell pattern")
-        ->check(require_text);
+    command->add_option("--only", options->only, "only runs of this name, or that match this shell pattern");
     const SmokeLimits smoke;
     command->add_flag(
         "--smoke", options->smoke,

@@ -36,8 +36,9 @@ TEST_F(Names, ThatAreNoTextAreRecordedAndFoundAgain) {
     EXPECT_NE(said.find("0 runs made, 1 were finished already"), std::string::npos) << said;
     EXPECT_EQ(find_no_text(said), std::string::npos);
     for (const auto& entry : std::filesystem::recursive_directory_iterator(results))
-        if (entry.path().extension() == ".csv" || entry.path().extension() == ".json")
+        if (entry.path().extension() == ".csv" || entry.path().extension() == ".json") {
             EXPECT_TRUE(is_text(entry.path())) << entry.path();
+        }
     EXPECT_EQ(read_rows(results / "iterations.csv").at(0).at("experiment"), "caf\xef\xbf\xbd");
 }
 

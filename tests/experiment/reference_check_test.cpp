@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "image/exr.h"
-#include "integrators/path.h"
 #include "test_folder.h"
 
 namespace photonlab {
