@@ -93,7 +93,7 @@ std::string describe_rmse(const ErrorMetrics& metrics) {
     if (!metrics.mse_unbiased)
         return fmt::format("{:.4g} with the reference's noise, which is not known", metrics.rmse);
     if (!(*metrics.mse_unbiased > 0.0)) return "below what the reference can tell";
-    return fmt::format("{:.4g} without the reference's noise", std::sqrt(*metrics.mse_unbiased));
+    return fmt::format("{:.6g} without the reference's noise", std::sqrt(*metrics.mse_unbiased));
 }
 
 }  // namespace photonlab

@@ -69,7 +69,7 @@ TEST_F(Names, ThatNoFileCanHaveAreRefusedBeforeAnythingIsRendered) {
     const std::string scene = (folder_ / "walls/scene.xml").string();
     const std::string passes = "1000000000";  // days of them
     std::string said;
-    EXPECT_EQ(run_program({"render", scene, "-o", (folder_ / (std::string(225, 'o') + ".exr")).string(), "--passes",
+    EXPECT_EQ(run_program({"render", scene, "-o", (folder_ / (std::string(245, 'o') + ".exr")).string(), "--passes",
                            passes, "--snapshots", passes},
                           said),
               2);

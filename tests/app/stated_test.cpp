@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <cmath>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -76,6 +77,13 @@ std::vector<std::string> split(const std::string& text, const std::string& separ
         parts.push_back(text.substr(begin, at - begin));
     parts.push_back(text.substr(begin));
     return parts;
+}
+
+/// As texts write it: 2, 0.5, 1e-4.
+std::string written(double number) {
+    if (number >= 1e-3) return fmt::format("{:g}", number);
+    const int exponent = static_cast<int>(std::floor(std::log10(number) + 1e-9));
+    return fmt::format("{:g}e{}", number / std::pow(10.0, exponent), exponent);
 }
 
 Names folders_in(const std::filesystem::path& folder) {
@@ -208,7 +216,7 @@ TEST_F(Stated, ColumnsAreThoseOfTheRecords) {
     for (std::size_t i = 0; i < components.size(); ++i)
         stated_components += (i == 0 ? "" : i + 1 == components.size() ? " or " : ", ") + ("`" + components[i] + "`");
     expect_stated("| `component` | | " + stated_components);
-    expect_stated(fmt::format("(\\|x\\| + \\|r\\| + {:g})", smape_epsilon));
+    expect_stated(fmt::format("(\\|x\\| + \\|r\\| + {})", written(smape_epsilon)));
 }
 
 TEST_F(Stated, ConstantsInSentences) {
@@ -217,11 +225,10 @@ TEST_F(Stated, ConstantsInSentences) {
     expect_stated(fmt::format("in {} slots a method", ensemble_slots));
     expect_stated(fmt::format("or at {},{:03} edges", largest_path_edges / 1000, largest_path_edges % 1000));
     expect_stated(fmt::format("sides up to {}", largest_image_side));
-    expect_stated(fmt::format("below {:g} refused", smallest_initial_radius));
-    expect_stated(fmt::format("`info` warns below {:g}", narrowest_gap));
-    expect_stated(fmt::format("a branch that carries less than {:g} (`branch_cutoff`)", default_branch_cutoff));
+    expect_stated(fmt::format("below {} refused", written(smallest_initial_radius)));
+    expect_stated(fmt::format("`info` warns below {}", written(narrowest_gap)));
+    expect_stated(fmt::format("a branch that carries less than {} (`branch_cutoff`)", written(default_branch_cutoff)));
     expect_stated(fmt::format("from a radius of {:g} footprints on", reference_footprints));
-    expect_stated(fmt::format("`--samples N` | adds N"));
     ASSERT_EQ(largest_check_footprints, 0.5);
     ASSERT_EQ(fewest_standard_errors, 4.0);
     expect_stated("within a radius r of half a footprint or less");
@@ -286,7 +293,9 @@ TEST_F(Stated, PluginsAreThoseThatScenesMayHave) {
     Names emitters = known("<emitter type=\"no\"/>");
     const Names of_shapes = known("<shape type=\"sphere\"><emitter type=\"no\"/></shape>");
     emitters.insert(of_shapes.begin(), of_shapes.end());
-    EXPECT_EQ(stated("emitters", ";"), emitters);
+    Names without_place;  // "area (in a shape)"
+    for (const std::string& emitter : emitters) without_place.insert(split(emitter, " (").at(0));
+    EXPECT_EQ(stated("emitters", ";"), without_place);
     EXPECT_NE(paragraph.find("a `perspective` sensor"), std::string::npos);
     EXPECT_EQ(known("<sensor type=\"no\"/>"), Names{"perspective"});
 }
@@ -315,7 +324,7 @@ TEST_F(Stated, ExperimentsAreThoseInTheRepository) {
     for (const auto& entry : std::filesystem::directory_iterator(source / "experiments"))
         if (entry.path().extension() == ".toml") files.insert(entry.path().stem().string());
     EXPECT_EQ(stated, files);
-    expect_stated("runs `experiments/demo.toml`");
+    EXPECT_NE(read_text_file(source / "demo").find("experiments/demo.toml"), std::string::npos);
 }
 
 TEST_F(Stated, RoomsAreThoseOfTheSources) {
