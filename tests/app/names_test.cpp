@@ -73,7 +73,8 @@ TEST_F(Names, ThatNoFileCanHaveAreRefusedBeforeAnythingIsRendered) {
                            passes, "--snapshots", passes},
                           said),
               2);
-    EXPECT_NE(said.find("-pass-1000000000.exr: cannot be written: File name too long"), std::string::npos) << said;
+    EXPECT_NE(said.find("File name too long"), std::string::npos) << said;
+    EXPECT_NE(said.find("-pass-1000000000.exr"), std::string::npos) << said;
     for (const char* option : {"--csv", "--png", "--checkpoint"}) {
         const std::string name = std::string(300, 'o') + (option == std::string("--png") ? ".png" : "");
         EXPECT_EQ(run_program({"render", scene, "-o", (folder_ / "a.exr").string(), "--passes", passes, option,

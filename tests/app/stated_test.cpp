@@ -82,7 +82,7 @@ std::vector<std::string> split(const std::string& text, const std::string& separ
 /// As texts write it: 2, 0.5, 1e-4.
 std::string written(double number) {
     if (number >= 1e-3) return fmt::format("{:g}", number);
-    const int exponent = static_cast<int>(std::floor(std::log10(number) + 1e-9));
+    const int exponent = static_cast<int>(std::floor(std::log10(number) + 1e-6));
     return fmt::format("{:g}e{}", number / std::pow(10.0, exponent), exponent);
 }
 
