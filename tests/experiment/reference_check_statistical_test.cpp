@@ -1,5 +1,5 @@
 // The comparison of paths with photons: its standard errors are those that repetition shows, it raises no alarm over
-// the references in the repository, and it does over a path-traced one of the water.
+// the references in the repository, and where paths are too noisy to tell it says how much light could be missing.
 
 #include "experiment/reference_check.h"
 
@@ -69,14 +69,17 @@ INSTANTIATE_TEST_SUITE_P(All, CommittedReferences,
                          ::testing::Values("cornell-box", "cornell-spheres", "mirror-sphere", "glass-sphere", "lamp"));
 
 // Paths find the caustics of a lamp over water hardly ever; photons do.
-TEST(PathsInTheWater, AreDisputed) {
+// Paths find the light of the pool, though seldom: after 256 samples a half their mean is that of the photons to 2%.
+// After 8 the comparison cannot tell, and must not sound as if it could.
+TEST(PathsInTheWater, AreNotDisputedAndItIsSaidHowMuchWouldHaveShown) {
     const std::filesystem::path source = PHOTONLAB_SOURCE_DIR;
     const Scene scene = build_scene(load_scene_file(source / "scenes/water/scene.xml"), Resolution{64, 64});
     const HitPoints hit_points = trace_hit_points(scene, 1, 2);
     const auto photons = measure_light_by_photons(scene, hit_points, {.max_depth = scene.max_depth, .threads = 2});
     const Json check = check_json(half_of(scene, hit_points, 8, 1, RandomPurpose::ReferenceHalfA),
                                   half_of(scene, hit_points, 8, 1, RandomPurpose::ReferenceHalfB), *photons);
-    EXPECT_EQ(check.at("verdict"), "disputed") << check.dump(1);
+    EXPECT_EQ(check.at("verdict"), "not disputed") << check.dump(1);
+    EXPECT_NE(check.at("why").get<std::string>().find("would have shown"), std::string::npos) << check.dump(1);
 }
 
 }  // namespace
