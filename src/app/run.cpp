@@ -26,6 +26,17 @@ struct RunOptions {
     ContinuationOptions continuation;
 };
 
+/// Throws InputError where what was left out is damaged.
+void say_what_was_left_out(const MergedRecords& merged, const std::filesystem::path& records) {
+    const std::string others = describe_left_out(merged);
+    if (!others.empty()) print_message("photonlab: {}: {}\n", records.string(), others);
+    if (!merged.faults.empty())
+        throw InputError(
+            fmt::format("{}; {} finished runs like this one are not in {}, and are made again by the same command "
+                        "without --only",
+                        merged.faults[0], merged.faults.size(), records.string()));
+}
+
 void run(const RunOptions& options) {
     const Experiment experiment =
         read_experiment(options.experiment, options.smoke ? std::optional(SmokeLimits{}) : std::nullopt);
@@ -45,13 +56,13 @@ void run(const RunOptions& options) {
     const ExperimentOutcome outcome = run_experiment(experiment, prepared, results, options.continuation);
     print_output("{} runs made, {} were finished already\n", outcome.ran, outcome.skipped);
     if (outcome.merged)
-        print_output("wrote {}: {} of {} runs\n", outcome.records.string(), *outcome.merged, experiment.runs.size());
+        print_output("wrote {}: {} of {} runs\n", outcome.records.string(), outcome.merged->runs,
+                     experiment.runs.size());
     print_output("wrote {}: run.json, iterations.csv and snapshots of each\n", (results / "runs").string());
-    if (!outcome.left_out.empty())
-        throw InputError(
-            fmt::format("{}; {} finished runs like this one are not in {}, and are made again by the same "
-                        "command without --only",
-                        outcome.left_out[0], outcome.left_out.size(), outcome.records.string()));
+    if (!outcome.why_not_merged.empty())
+        print_message("photonlab: {}: stays as it was, since not all runs can be told: {}\n", outcome.records.string(),
+                      outcome.why_not_merged);
+    if (outcome.merged) say_what_was_left_out(*outcome.merged, outcome.records);
     if (outcome.is_interrupted) throw Interrupted("interrupted, and saved; the same command goes on from there");
 }
 

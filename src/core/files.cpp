@@ -5,9 +5,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -28,31 +30,28 @@ std::uintmax_t size_of(const Descriptor& descriptor) {
     return ::fstat(descriptor.number(), &status) == 0 ? static_cast<std::uintmax_t>(status.st_size) : 0;
 }
 
-/// The file, opened to be read; it is ordinary. Nothing is waited for, not even by the files of /proc that look
-/// ordinary and end when the kernel has something to say.
+/// The file, opened to be read; it is ordinary. Not open, with the reason in errno, when there is none. Nothing is
+/// waited for, not even by the files of /proc that look ordinary and end when the kernel has something to say.
 Descriptor open_ordinary_file(const std::filesystem::path& file) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(file, error);
     if (std::filesystem::is_directory(status)) throw InputError(file.string(), "expected a file, this is a folder");
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
         throw InputError(file.string(), "expected a file, this is a pipe or a device");
-    if (error) throw InputError(file.string(), "cannot be read: " + error.message());
+    if (status.type() == std::filesystem::file_type::none)
+        throw InputError(file.string(), "cannot be read: " + error.message());
     Descriptor descriptor(file, O_RDONLY | O_NOCTTY, Links::Followed);
-    if (!descriptor.is_open()) throw InputError(file.string(), cannot_be_read());
+    if (!descriptor.is_open()) {
+        if (errno == ENOENT || errno == ENOTDIR) return descriptor;
+        throw InputError(file.string(), cannot_be_read());
+    }
     char byte = 0;
     if (size_of(descriptor) == 0 && ::read(descriptor.number(), &byte, 1) != 0)
         throw InputError(file.string(), "expected a file that has a size, this is one of the kernel's");
     return descriptor;
 }
 
-}  // namespace
-
-void require_ordinary_file(const std::filesystem::path& file) {
-    open_ordinary_file(file);
-}
-
-std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest) {
-    const Descriptor descriptor = open_ordinary_file(file);
+std::string read_all(const std::filesystem::path& file, const Descriptor& descriptor, std::uintmax_t largest) {
     const std::uintmax_t size = size_of(descriptor);
     if (size > largest)
         throw InputError(file.string(), fmt::format("expected at most {} bytes, got {}", largest, size));
@@ -65,6 +64,74 @@ std::string read_text_file(const std::filesystem::path& file, std::uintmax_t lar
         done += static_cast<std::size_t>(count);
     }
     return text;
+}
+
+}  // namespace
+
+void require_ordinary_file(const std::filesystem::path& file) {
+    if (!open_ordinary_file(file).is_open()) throw InputError(file.string(), cannot_be_read());
+}
+
+std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest) {
+    const Descriptor descriptor = open_ordinary_file(file);
+    if (!descriptor.is_open()) throw InputError(file.string(), cannot_be_read());
+    return read_all(file, descriptor, largest);
+}
+
+std::optional<std::string> read_if_there(const std::filesystem::path& file, std::uintmax_t largest) {
+    const Descriptor descriptor = open_ordinary_file(file);
+    return descriptor.is_open() ? std::optional(read_all(file, descriptor, largest)) : std::nullopt;
+}
+
+bool is_there(const std::filesystem::path& name) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(name, error);
+    if (status.type() == std::filesystem::file_type::none) throw InputError(name.string(), error.message());
+    return std::filesystem::exists(status);
+}
+
+bool is_folder(const std::filesystem::path& name) {
+    std::error_code error;
+    return std::filesystem::is_directory(name, error);
+}
+
+std::uintmax_t size_of_file(const std::filesystem::path& file) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(file, error);
+    if (error) throw InputError(file.string(), "cannot be read: " + error.message());
+    return size;
+}
+
+std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> entries;
+    std::error_code error;
+    std::filesystem::directory_iterator entry(folder, error);
+    for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error))
+        entries.push_back(entry->path());
+    if (error && error != std::errc::no_such_file_or_directory)
+        throw InputError(folder.string(), "cannot be read: " + error.message());
+    std::sort(entries.begin(), entries.end());
+    return entries;
+}
+
+std::vector<std::filesystem::path> files_below(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> files;
+    for (std::filesystem::path& entry : entries_of(folder)) {
+        std::error_code error;
+        if (std::filesystem::symlink_status(entry, error).type() != std::filesystem::file_type::directory) {
+            files.push_back(std::move(entry));
+            continue;
+        }
+        std::vector<std::filesystem::path> below = files_below(entry);
+        std::move(below.begin(), below.end(), std::back_inserter(files));
+    }
+    return files;
+}
+
+void remove_if_there(const std::filesystem::path& name) {
+    std::error_code error;
+    std::filesystem::remove_all(name, error);
+    if (error) throw InputError(name.string(), "cannot be removed: " + error.message());
 }
 
 std::string working_directory() {
@@ -83,7 +150,7 @@ void make_folder(const std::filesystem::path& folder) {
     if (folder.empty()) return;
     std::error_code error;
     std::filesystem::create_directories(folder, error);
-    if (!std::filesystem::is_directory(folder))
+    if (!is_folder(folder))
         throw InputError(folder.string(),
                          "folder cannot be made: " + (error ? error.message() : "a file has this name"));
 }

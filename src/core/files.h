@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/descriptor.h"
 #include "core/state_archive.h"
@@ -20,6 +21,30 @@ void require_ordinary_file(const std::filesystem::path& file);
 
 /// Throws InputError when it is no ordinary file, cannot be read, or has more than `largest` bytes.
 std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest = std::uintmax_t{1} << 31);
+
+/// The same; empty when there is no such file, or no longer.
+std::optional<std::string> read_if_there(const std::filesystem::path& file,
+                                         std::uintmax_t largest = std::uintmax_t{1} << 31);
+
+/// True when there is a file, folder or device of this name. Throws InputError when that cannot be known: the name is
+/// too long, or a folder on the way may not be looked into.
+bool is_there(const std::filesystem::path& name);
+
+/// True of a folder; false also where that cannot be known, which opening it says.
+bool is_folder(const std::filesystem::path& name);
+
+/// Its size in bytes. Throws InputError when that cannot be known.
+std::uintmax_t size_of_file(const std::filesystem::path& file);
+
+/// What is directly in a folder, in the order of names; nothing where there is none. Throws InputError when it cannot
+/// be read.
+std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder);
+
+/// The same of what is no folder, at any depth.
+std::vector<std::filesystem::path> files_below(const std::filesystem::path& folder);
+
+/// Removes the file, or the folder with all that is in it, if it is there. Throws InputError when it stays.
+void remove_if_there(const std::filesystem::path& name);
 
 /// The folder that the program was started in; empty when it is not there any more.
 std::string working_directory();

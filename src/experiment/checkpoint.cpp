@@ -121,8 +121,15 @@ void save(const Checkpoint& checkpoint, const StateExchange& state) {
     temporary.rename();
 }
 
+void set_aside(const Checkpoint& checkpoint) {
+    std::error_code error;
+    std::filesystem::rename(checkpoint.file, checkpoint.file.string() + ".old", error);
+    if (error && error != std::errc::no_such_file_or_directory)
+        throw InputError(checkpoint.file.string(), "cannot be renamed: " + error.message());
+}
+
 void discard(const Checkpoint& checkpoint) {
-    std::filesystem::remove(checkpoint.file);
+    remove_if_there(checkpoint.file);
     remove_leftovers(checkpoint.file.parent_path());
 }
 

@@ -17,7 +17,7 @@
 
 namespace photonlab {
 
-inline constexpr std::uint32_t checkpoint_format = 3;  ///< to be raised when a state's exchange() changes
+inline constexpr std::uint32_t checkpoint_format = 3;          ///< to be raised when a state's exchange() changes
 inline constexpr double default_seconds_between_saves = 30.0;  ///< of all long work
 
 /// Where a run keeps its state.
@@ -43,6 +43,9 @@ void require_whole_checkpoint(const std::filesystem::path& file);
 /// What load() does with the file's content; `place` is its name in messages.
 void load_checkpoint(std::istream& stream, const std::string& place, const Checkpoint& checkpoint,
                      const StateExchange& state);
+
+/// Renames the file, if it is there, to checkpoint.old.
+void set_aside(const Checkpoint& checkpoint);
 
 /// Removes the file of a run that is finished, and what killed processes left beside it.
 void discard(const Checkpoint& checkpoint);

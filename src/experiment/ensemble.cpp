@@ -49,7 +49,7 @@ Ensemble::Ensemble(std::filesystem::path folder, std::string key, Json descripti
     description_["key"] = key_;
     description_["slots"] = ensemble_slots;
     for (std::size_t slot = 0; slot < ensemble_slots; ++slot) {
-        if (!std::filesystem::exists(slot_file(slot))) continue;
+        if (!is_there(slot_file(slot))) continue;
         try {
             SlotContent content = read_slot_content(slot_file(slot));
             if (content.key == key_) {
@@ -93,13 +93,13 @@ void Ensemble::describe() const {
     if (seeds_.empty()) return;
     const std::filesystem::path file = folder_ / "ensemble.json";
     const std::string text = with_checksum(description_);
-    if (!std::filesystem::exists(file) || read_text_file(file) != text) write_text_file(file, text);
+    if (read_if_there(file) != text) write_text_file(file, text);
 }
 
 void Ensemble::add(std::uint64_t seed, const std::vector<PassImage>& images) {
     if (contains(seed)) return;
     if (is_of_others_)
-        for (std::size_t slot = 0; slot < ensemble_slots; ++slot) std::filesystem::remove(slot_file(slot));
+        for (std::size_t slot = 0; slot < ensemble_slots; ++slot) remove_if_there(slot_file(slot));
     is_of_others_ = false;
     make_folder(folder_);
 

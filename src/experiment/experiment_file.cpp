@@ -245,10 +245,12 @@ private:
             throw InputError(place(node),
                              fmt::format("{}: expected the name of a file, got one with a NUL in it", what));
         std::filesystem::path whole = (experiment_.file.parent_path() / written).lexically_normal();
-        std::error_code error;
-        if (!std::filesystem::exists(whole, error))
-            throw InputError(place(node), fmt::format("{}: {} does not exist", what, whole.string()));
-        return whole;
+        try {
+            if (is_there(whole)) return whole;
+        } catch (const InputError& error) {
+            throw InputError(place(node), fmt::format("{}: {}", what, error.what()));
+        }
+        throw InputError(place(node), fmt::format("{}: {} does not exist", what, whole.string()));
     }
 
     /// Calls `take(name, whole numbers, place)` for each entry of a table of lists of `count` numbers.
@@ -310,7 +312,7 @@ private:
             } else {
                 scene.file = path(node, "scenes");
             }
-            if (std::filesystem::is_directory(scene.file))
+            if (is_folder(scene.file))
                 throw InputError(place(node), scene.file.string() + " is a folder; expected a scene file in it");
             if (scene.name.empty()) {
                 const bool in_folder = scene.file.filename() == "scene.xml";

@@ -107,8 +107,8 @@ public:
 
     void add(const ExperimentRun& run) {
         const Point& point = point_of(run);
-        PreparedRun ready{&run, point.settings, "", point.key, point.reference_key,
-                          results_ / "runs" / run.name, false};
+        PreparedRun ready{&run, point.settings, "", point.key, point.reference_key, results_ / "runs" / run.name,
+                          false};
         ready.settings.seed = run.seed;
         ready.key = hash_text(fmt::format("{} {} {}", point.key, run.seed, point.snapshots));
         ready.finished = is_as_it_finished(ready) && (!point.ensemble || point.ensemble->contains(run.seed));
@@ -176,13 +176,14 @@ private:
 
     /// Of a run that finished with this key and is damaged it says so.
     bool is_as_it_finished(const PreparedRun& ready) {
-        const std::optional<FinishedRun> run = read_finished_run(ready.folder);
-        if (!run && std::filesystem::exists(ready.folder / "run.json"))
-            prepared_.faults.push_back((ready.folder / "run.json").string() + ": is damaged, or another program's");
-        if (!run || run->key != ready.key) return false;
-        std::vector<std::string> faults = faults_of(ready.folder, *run, check_);
-        std::move(faults.begin(), faults.end(), std::back_inserter(prepared_.faults));
-        return faults.empty();
+        FoundRun found = look_at_run(ready.folder, [&](const FinishedRun& run) {
+            return run.key == ready.key ? faults_of(ready.folder, run, check_) : std::vector<std::string>{};
+        });
+        if (found.is_described && !found.run)
+            found.faults.push_back((ready.folder / "run.json").string() + ": is damaged, or another program's");
+        const bool is_sound = found.faults.empty();
+        std::move(found.faults.begin(), found.faults.end(), std::back_inserter(prepared_.faults));
+        return is_sound && found.run && found.run->key == ready.key;
     }
 
     /// Sums that something is still to be added to are read, where records are.
@@ -225,7 +226,7 @@ std::vector<RunsTogether> runs_together(const std::vector<PreparedRun>& runs, co
         const RunSettings& settings = run.settings;
         auto& candidates = alike[{run.run->scene, settings.seed, settings.passes, settings.method.photons_per_pass}];
         const auto group = std::find_if(candidates.begin(), candidates.end(), [&](std::size_t candidate) {
-            return fit(groups[candidate][0]->settings, settings);
+            return groups[candidate].size() < most_runs_together && fit(groups[candidate][0]->settings, settings);
         });
         if (group != candidates.end()) {
             groups[*group].push_back(&run);

@@ -38,6 +38,9 @@ bool is_made(const Experiment& experiment, const PreparedRun& run, const std::fi
 /// What a reference of the scene must be of.
 ReferenceSubject subject_of(const Scene& scene, int samples_per_pixel, int max_depth);
 
+/// Most runs of a group: each has a lock while it is made, which is an open file, and many systems allow 1024.
+inline constexpr std::size_t most_runs_together = 256;
+
 /// Runs that share their photons and hit points; never empty.
 using RunsTogether = std::vector<const PreparedRun*>;
 

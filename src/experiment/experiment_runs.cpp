@@ -9,6 +9,7 @@
 #include <set>
 #include <thread>
 
+#include "core/error.h"
 #include "core/file_lock.h"
 #include "core/files.h"
 #include "core/messages.h"
@@ -142,7 +143,7 @@ bool open_results(const Experiment& experiment, const std::filesystem::path& res
 void clear_up(const Experiment& experiment, const PreparedRun& ready) {
     const Checkpoint checkpoint = checkpoint_of(experiment, ready);
     const std::filesystem::path lock_file = ready.folder / "lock";
-    if (!std::filesystem::exists(checkpoint.file) && !std::filesystem::exists(lock_file)) return;
+    if (!is_there(checkpoint.file) && !is_there(lock_file)) return;
     if (const auto lock = FileLock::try_lock(lock_file)) discard(checkpoint);
 }
 
@@ -242,6 +243,18 @@ void describe_ensembles(const Experiment& experiment, const PreparedExperiment& 
     }
 }
 
+/// All runs of the experiment: those that were not selected may be finished, too. Their keys need their scenes and
+/// references; throws InputError where one of these cannot be had.
+std::vector<RunToMerge> runs_to_merge(const Experiment& experiment, const PreparedExperiment& prepared,
+                                      const std::filesystem::path& results) {
+    const bool is_all = prepared.runs.size() == experiment.runs.size();
+    const PreparedExperiment all =
+        is_all ? PreparedExperiment{} : prepare_experiment(experiment, results, std::nullopt, Check::Sizes);
+    std::vector<RunToMerge> runs;
+    for (const PreparedRun& ready : is_all ? prepared.runs : all.runs) runs.push_back({ready.folder, ready.key});
+    return runs;
+}
+
 }  // namespace
 
 ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExperiment& prepared,
@@ -270,18 +283,18 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
     Making(experiment, prepared, results, options, groups).make_all(std::move(groups), outcome);
     describe_ensembles(experiment, prepared, results, options);
 
-    // Runs outside the selection may be finished too: their keys need their scenes, so all are prepared for the merge.
-    const bool is_all = prepared.runs.size() == experiment.runs.size();
-    const PreparedExperiment all =
-        is_all ? PreparedExperiment{} : prepare_experiment(experiment, results, std::nullopt, Check::Sizes);
     std::vector<RunToMerge> runs;
-    for (const PreparedRun& ready : is_all ? prepared.runs : all.runs) runs.push_back({ready.folder, ready.key});
+    try {
+        runs = runs_to_merge(experiment, prepared, results);
+    } catch (const InputError& error) {
+        outcome.why_not_merged = error.what();
+        return outcome;
+    }
     const auto lock = FileLock::wait_for(results / "lock", options.is_interrupted);
-    outcome.is_interrupted = outcome.is_interrupted || !lock;
-    if (!lock) return outcome;
-    MergedRecords merged = merge_records(experiment.name, results, runs);
-    outcome.merged = merged.runs;
-    outcome.left_out = std::move(merged.faults);
+    if (lock)
+        outcome.merged = merge_records(experiment.name, results, runs);
+    else
+        outcome.is_interrupted = true;
     return outcome;
 }
 

@@ -26,17 +26,18 @@
 
 #include "experiment/experiment_file.h"
 #include "experiment/experiment_plan.h"
+#include "experiment/merged_records.h"
 #include "experiment/run_group.h"
 
 namespace photonlab {
 
 struct ExperimentOutcome {
     std::size_t ran = 0;
-    std::size_t skipped = 0;            ///< were finished already, or by another process
-    std::filesystem::path records;      ///< the merged iterations.csv
-    std::optional<std::size_t> merged;  ///< runs in it; empty when the merge was interrupted
-    bool is_interrupted = false;        ///< what was running is saved
-    std::vector<std::string> left_out;  ///< of it: what is wrong with runs that had finished, a line each
+    std::size_t skipped = 0;              ///< were finished already, or by another process
+    std::filesystem::path records;        ///< the merged iterations.csv
+    std::optional<MergedRecords> merged;  ///< empty when they stay as they were
+    std::string why_not_merged;           ///< of runs that were not selected: what keeps their rows from being merged
+    bool is_interrupted = false;          ///< what was running is saved
 };
 
 /// Runs what is not finished, from its checkpoints, and merges the records. Throws InputError before anything is run

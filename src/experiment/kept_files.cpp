@@ -4,6 +4,7 @@
 
 #include <string_view>
 
+#include "core/error.h"
 #include "core/files.h"
 #include "core/hash.h"
 
@@ -27,7 +28,7 @@ std::optional<std::string> other_hash(const std::filesystem::path& file, const s
 }  // namespace
 
 FileStamp stamp_of(const std::filesystem::path& file) {
-    return {std::filesystem::file_size(file), hash_file(file)};
+    return {size_of_file(file), hash_file(file)};
 }
 
 FileStamp stamp_of_text(const std::string& text) {
@@ -47,12 +48,16 @@ std::optional<FileStamp> stamp_from(const Json& json) {
 }
 
 std::optional<std::string> fault_of(const std::filesystem::path& file, const FileStamp& stamp, Check check) {
-    std::error_code error;
-    const std::uintmax_t bytes = std::filesystem::file_size(file, error);
-    if (error) return fmt::format("{}: {}", file.string(), error.message());
+    std::error_code reason;
+    const std::uintmax_t bytes = std::filesystem::file_size(file, reason);
+    if (reason) return fmt::format("{}: {}", file.string(), reason.message());
     if (bytes != stamp.bytes) return other_size(file, bytes, stamp);
-    const bool is_read = check == Check::Everything || (check == Check::Records && file.extension() == ".csv");
-    return is_read ? other_hash(file, hash_file(file), stamp) : std::nullopt;
+    if (check == Check::Sizes || (check == Check::Records && file.extension() != ".csv")) return std::nullopt;
+    try {
+        return other_hash(file, hash_file(file), stamp);
+    } catch (const InputError& error) {
+        return error.what();
+    }
 }
 
 std::optional<std::string> fault_of_text(const std::filesystem::path& file, const std::string& text,

@@ -44,8 +44,8 @@ std::optional<FileStamp> stamp_from(const Json& json);
 /// How closely files are looked at. By Records, those that are merged, which are CSV, are read.
 enum class Check { Sizes, Records, Everything };
 
-/// What is wrong with a file, beginning with its name, or nothing: it is not there, or not what it was when its stamp
-/// was taken.
+/// What is wrong with a file, beginning with its name, or nothing: it is not there, cannot be read, or is not what it
+/// was when its stamp was taken.
 std::optional<std::string> fault_of(const std::filesystem::path& file, const FileStamp& stamp, Check check);
 
 /// The same of a text that was read from the file.

@@ -31,15 +31,29 @@ struct RunToMerge {
     std::string key;
 };
 
+/// Finished runs of one kind.
+struct CountedRuns {
+    std::size_t count = 0;
+    std::string first;  ///< name of its folder
+
+    void add(const std::filesystem::path& folder);
+};
+
 struct MergedRecords {
     std::size_t runs = 0;             ///< whose rows are there
     std::vector<std::string> faults;  ///< of finished runs that were left out, one line each
+    CountedRuns of_other_settings;    ///< left out: what they were made with is not what is asked for now
+    CountedRuns of_no_run;            ///< left out: the experiment has no run that is called so
 };
 
 /// Merges the runs that are finished. What it merges it checks: a run that is not what it was when it finished is left
-/// out, and named. Writes nothing where nothing has changed. For whoever holds the folder's lock.
+/// out, and named. Others that are finished and left out are counted. Writes nothing where nothing has changed. For
+/// whoever holds the folder's lock, beside processes that make runs.
 MergedRecords merge_records(const std::string& experiment, const std::filesystem::path& results,
                             const std::vector<RunToMerge>& runs);
+
+/// A sentence on finished runs that were left out and are sound; empty where there are none.
+std::string describe_left_out(const MergedRecords& merged);
 
 /// What merged.json says.
 struct MergedFiles {

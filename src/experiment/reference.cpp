@@ -61,7 +61,7 @@ std::string reference_key(const ReferenceSubject& subject) {
 }
 
 std::string check_reference(const std::filesystem::path& path, const ReferenceSubject& subject) {
-    if (!std::filesystem::is_directory(path)) {
+    if (!is_folder(path)) {
         require_size(path, read_exr(path), subject);
         return hash_file(path);
     }
@@ -74,7 +74,7 @@ Reference load_reference(const std::filesystem::path& path, const std::optional<
                          const std::string& component) {
     Reference reference;
     reference.path = path;
-    if (!std::filesystem::is_directory(path)) {
+    if (!is_folder(path)) {
         reference.half_a = read_exr(path, nullptr, component);
         if (subject) require_size(path, reference.half_a, *subject);
         reference.key = hash_file(path);

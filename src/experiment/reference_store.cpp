@@ -84,7 +84,7 @@ public:
           seed_(settings.seed),
           method_(settings.method),
           loop_(scene, hit_points, {settings}, purposes) {
-        if (!std::filesystem::exists(file_)) return;
+        if (!is_there(file_)) return;
         Metadata metadata;
         stored_ = read_exr(file_, &metadata);
         if (metadata[std::string(key_attribute)] != key_)
@@ -220,7 +220,7 @@ void set_check(Json& json, const Json& check) {
 }
 
 double stored_seconds(const std::filesystem::path& folder) {
-    return std::filesystem::exists(folder / "reference.json") ? read_reference_json(folder).value("seconds", 0.0) : 0.0;
+    return is_there(folder / "reference.json") ? read_reference_json(folder).value("seconds", 0.0) : 0.0;
 }
 
 }  // namespace
@@ -311,13 +311,13 @@ Json compare_reference_with_photons(const Scene& scene, const ReferenceSettings&
 
 Json read_reference_json(const std::filesystem::path& folder) {
     const std::filesystem::path file = folder / "reference.json";
-    if (!std::filesystem::exists(file))
+    const std::optional<std::string> text = read_if_there(file, largest_json);
+    if (!text)
         throw InputError(folder.string(),
                          "this is no reference: reference.json is missing (photonlab reference makes one)");
-    const std::string text = read_text_file(file, largest_json);
     Json json;
     try {
-        json = parse_json(text);
+        json = parse_json(*text);
     } catch (const InputError& error) {
         throw InputError(file.string(), std::string("this is no reference: ") + error.what());
     }

@@ -35,16 +35,21 @@ std::string whole_path(const std::filesystem::path& file) {
 
 /// What a JSON file says of its experiment; empty when it is not there, or says nothing.
 std::optional<std::string> experiment_in(const std::filesystem::path& file) {
-    if (!std::filesystem::exists(file)) return std::nullopt;
-    const Json json = parse_sound_json(read_text_file(file)).value_or(Json());
+    const std::optional<std::string> text = read_if_there(file);
+    const Json json = text ? parse_sound_json(*text).value_or(Json()) : Json();
     const auto found = json.is_object() ? json.find("experiment") : json.end();
     if (found == json.end() || !found->is_string()) return std::nullopt;
     return found->get<std::string>();
 }
 
+/// True of a folder that is not empty, and of a file.
+bool holds_anything(const std::filesystem::path& name) {
+    return is_folder(name) ? !entries_of(name).empty() : is_there(name);
+}
+
 /// Refuses a description that is there and is not of the experiment.
 void require_own_json(const Experiment& experiment, const std::filesystem::path& file) {
-    if (!std::filesystem::exists(file)) return;
+    if (!is_there(file)) return;
     const auto named = experiment_in(file);
     if (named && *named == experiment.name) return;
     throw InputError(file.string(), fmt::format("is there already, and says nothing of the experiment {}; {}",
@@ -53,7 +58,7 @@ void require_own_json(const Experiment& experiment, const std::filesystem::path&
 
 /// Refuses a table that is there and has no rows of the experiment.
 void require_own_table(const Experiment& experiment, const std::filesystem::path& file) {
-    if (!std::filesystem::exists(file)) return;
+    if (!is_there(file)) return;
     require_ordinary_file(file);
     std::ifstream stream(file, std::ios::binary);
     std::string start(std::size_t{1} << 16, '\0');  // the header and the first row are in it
@@ -71,17 +76,16 @@ void require_own_table(const Experiment& experiment, const std::filesystem::path
 /// Refuses a folder that is there and holds something, unless one of its own folders at least says in `file` that it is
 /// the experiment's, and none says that it is another's.
 void require_own_folders(const Experiment& experiment, const std::filesystem::path& folder, const std::string& file) {
-    if (!std::filesystem::exists(folder) || std::filesystem::is_empty(folder)) return;
+    if (!holds_anything(folder)) return;
     bool is_ours = false;
-    if (std::filesystem::is_directory(folder))
-        for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-            const auto named = experiment_in(entry.path() / file);
-            if (named && *named != experiment.name)
-                throw InputError((entry.path() / file).string(),
-                                 fmt::format("this is of the experiment {}, not of {}; {}", quoted(*named),
-                                             quoted(experiment.name), advice));
-            is_ours = is_ours || named;
-        }
+    const auto entries = is_folder(folder) ? entries_of(folder) : std::vector<std::filesystem::path>{};
+    for (const std::filesystem::path& entry : entries) {
+        const auto named = experiment_in(entry / file);
+        if (named && *named != experiment.name)
+            throw InputError((entry / file).string(), fmt::format("this is of the experiment {}, not of {}; {}",
+                                                                  quoted(*named), quoted(experiment.name), advice));
+        is_ours = is_ours || named;
+    }
     if (!is_ours)
         throw InputError(folder.string(), fmt::format("is there already, and holds nothing of the experiment {}; {}",
                                                       quoted(experiment.name), advice));
@@ -89,17 +93,13 @@ void require_own_folders(const Experiment& experiment, const std::filesystem::pa
 
 bool has_any_run_of(const Experiment& experiment, const std::filesystem::path& results) {
     return std::any_of(experiment.runs.begin(), experiment.runs.end(),
-                       [&](const ExperimentRun& run) { return std::filesystem::exists(results / "runs" / run.name); });
-}
-
-bool holds_runs(const std::filesystem::path& results) {
-    return std::filesystem::exists(results / "runs") && !std::filesystem::is_empty(results / "runs");
+                       [&](const ExperimentRun& run) { return is_there(results / "runs" / run.name); });
 }
 
 /// Refuses what experiment.json says, if it is not of this experiment.
 void require_own_description(const Experiment& experiment, const std::filesystem::path& results) {
     const std::filesystem::path file = description_file(results);
-    const Json json = checked_json(read_text_file(file, largest_json)).value_or(Json::object());
+    const Json json = checked_json(read_if_there(file, largest_json).value_or("")).value_or(Json::object());
     const auto text = [&](const char* name) {
         const auto found = json.find(name);
         return found != json.end() && found->is_string() ? std::optional(found->get<std::string>()) : std::nullopt;
@@ -120,7 +120,7 @@ void require_own_description(const Experiment& experiment, const std::filesystem
     // another.
     const std::string here = whole_path(experiment.file);
     const auto there = text("file");
-    if (there && *there != here && holds_runs(results) && !has_any_run_of(experiment, results))
+    if (there && *there != here && holds_anything(results / "runs") && !has_any_run_of(experiment, results))
         throw InputError(file.string(), fmt::format("these are results of {}, which has no run in common with {}; {}",
                                                     *there, here, advice));
 }
@@ -128,7 +128,7 @@ void require_own_description(const Experiment& experiment, const std::filesystem
 }  // namespace
 
 void require_own_results(const Experiment& experiment, const std::filesystem::path& results) {
-    if (std::filesystem::exists(description_file(results))) return require_own_description(experiment, results);
+    if (is_there(description_file(results))) return require_own_description(experiment, results);
     require_own_json(experiment, results / "merged.json");
     require_own_table(experiment, results / "iterations.csv");
     require_own_table(experiment, results / "probes.csv");
@@ -147,13 +147,12 @@ void claim_results(const Experiment& experiment, const std::filesystem::path& re
                     {"program", {{"name", "photonlab"}, {"version", program_version().version}}}};
     const std::string text = with_checksum(json);
     const std::filesystem::path file = description_file(results);
-    if (!std::filesystem::exists(file) || read_text_file(file, largest_json) != text) write_text_file(file, text);
+    if (read_if_there(file, largest_json) != text) write_text_file(file, text);
 }
 
 std::optional<std::string> experiment_of_results(const std::filesystem::path& results) {
     const std::filesystem::path file = description_file(results);
-    if (!std::filesystem::exists(file)) return std::nullopt;
-    const std::optional<Json> json = checked_json(read_text_file(file, largest_json));
+    const std::optional<Json> json = checked_json(read_if_there(file, largest_json).value_or(""));
     const Json name = json ? json->value("experiment", Json()) : Json();
     return name.is_string() ? std::optional(name.get<std::string>()) : std::nullopt;
 }

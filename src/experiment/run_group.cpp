@@ -89,9 +89,8 @@ void exchange(StateArchive& archive, OpenRun& run) {
 /// Everything a run has in its folder goes, but for its checkpoint, which is set aside.
 void begin_anew(const OpenRun& run) {
     const std::filesystem::path& folder = run.prepared->folder;
-    for (const char* file : {"run.json", "probes.csv", "snapshots"}) std::filesystem::remove_all(folder / file);
-    if (std::filesystem::exists(run.checkpoint.file))
-        std::filesystem::rename(run.checkpoint.file, run.checkpoint.file.string() + ".old");
+    for (const char* file : {"run.json", "probes.csv", "snapshots"}) remove_if_there(folder / file);
+    set_aside(run.checkpoint);
 }
 
 OpenRun open_run(const RunGroup& group, const PreparedRun& prepared) {

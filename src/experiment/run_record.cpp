@@ -26,6 +26,33 @@ std::string utc(std::chrono::system_clock::time_point time) {
     return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(time)));
 }
 
+/// What run.json says; empty when it is damaged or another program's.
+std::optional<FinishedRun> finished_run_in(const std::string& text) {
+    const std::optional<Json> json = checked_json(text);
+    if (!json || json->value("schema", Json()) != run_schema || json->value("finished", Json()) != true)
+        return std::nullopt;
+    FinishedRun run;
+    try {
+        run.experiment = json->at("experiment").get<std::string>();
+        run.run = json->at("run").get<std::string>();
+        run.key = json->at("key").get<std::string>();
+        run.seed = json->at("seed").get<std::uint64_t>();
+        if (const Json& ensemble = json->at("ensemble"); !ensemble.is_null())
+            run.ensemble = {ensemble.at("folder").get<std::string>(), ensemble.at("key").get<std::string>()};
+        if (const Json& reference = json->at("reference"); !reference.is_null())
+            run.reference = {reference.at("path").get<std::string>(), reference.at("key").get<std::string>(),
+                             json->at("working_directory").get<std::string>()};
+        for (const auto& [name, value] : json->at("files").items()) {
+            const std::optional<FileStamp> stamp = stamp_from(value);
+            if (!stamp) return std::nullopt;
+            run.files.emplace(name, *stamp);
+        }
+    } catch (const Json::exception&) {
+        return std::nullopt;
+    }
+    return run;
+}
+
 Json optional_json(const std::optional<double>& value) {
     return value ? Json(*value) : Json();
 }
@@ -113,31 +140,8 @@ Json run_json(const RunRecord& record, const Recorder& recorder, const RunState&
 }
 
 std::optional<FinishedRun> read_finished_run(const std::filesystem::path& folder) {
-    const std::filesystem::path file = folder / "run.json";
-    if (!std::filesystem::exists(file)) return std::nullopt;
-    const std::optional<Json> json = checked_json(read_text_file(file));
-    if (!json || json->value("schema", Json()) != run_schema || json->value("finished", Json()) != true)
-        return std::nullopt;
-    FinishedRun run;
-    try {
-        run.experiment = json->at("experiment").get<std::string>();
-        run.run = json->at("run").get<std::string>();
-        run.key = json->at("key").get<std::string>();
-        run.seed = json->at("seed").get<std::uint64_t>();
-        if (const Json& ensemble = json->at("ensemble"); !ensemble.is_null())
-            run.ensemble = {ensemble.at("folder").get<std::string>(), ensemble.at("key").get<std::string>()};
-        if (const Json& reference = json->at("reference"); !reference.is_null())
-            run.reference = {reference.at("path").get<std::string>(), reference.at("key").get<std::string>(),
-                             json->at("working_directory").get<std::string>()};
-        for (const auto& [name, value] : json->at("files").items()) {
-            const std::optional<FileStamp> stamp = stamp_from(value);
-            if (!stamp) return std::nullopt;
-            run.files.emplace(name, *stamp);
-        }
-    } catch (const Json::exception&) {
-        return std::nullopt;
-    }
-    return run;
+    const std::optional<std::string> text = read_if_there(folder / "run.json");
+    return text ? finished_run_in(*text) : std::nullopt;
 }
 
 std::vector<std::string> faults_of(const std::filesystem::path& folder, const FinishedRun& run, Check check) {
@@ -145,6 +149,21 @@ std::vector<std::string> faults_of(const std::filesystem::path& folder, const Fi
     for (const auto& [name, stamp] : run.files)
         if (auto fault = fault_of(folder / name, stamp, check)) faults.push_back(std::move(*fault));
     return faults;
+}
+
+FoundRun look_at_run(const std::filesystem::path& folder,
+                     const std::function<std::vector<std::string>(const FinishedRun&)>& find_faults) {
+    const std::filesystem::path file = folder / "run.json";
+    std::optional<std::string> text = read_if_there(file);
+    while (true) {
+        FoundRun found{text.has_value(), text ? finished_run_in(*text) : std::nullopt, {}};
+        if (!found.run) return found;
+        found.faults = find_faults(*found.run);
+        if (found.faults.empty()) return found;
+        std::optional<std::string> now = read_if_there(file);
+        if (now == text) return found;
+        text = std::move(now);
+    }
 }
 
 Metadata image_metadata(const RunIdentity& identity, const RunState& state, const Scene& scene) {

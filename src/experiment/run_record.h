@@ -13,6 +13,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -80,6 +81,18 @@ std::optional<FinishedRun> read_finished_run(const std::filesystem::path& folder
 
 /// What is wrong with the run's files, one line each that begins with the file's name.
 std::vector<std::string> faults_of(const std::filesystem::path& folder, const FinishedRun& run, Check check);
+
+/// A run's folder as it was found.
+struct FoundRun {
+    bool is_described = false;        ///< there is a run.json
+    std::optional<FinishedRun> run;   ///< empty when there is none, or it is damaged or another program's
+    std::vector<std::string> faults;  ///< what was found wrong with the run's files, one line each
+};
+
+/// Looks at a run that another process may be making again: run.json goes first then, and comes last. Where the files
+/// do not fit, `find_faults` is therefore asked again as long as there is another run.json by then.
+FoundRun look_at_run(const std::filesystem::path& folder,
+                     const std::function<std::vector<std::string>(const FinishedRun&)>& find_faults);
 
 /// Attributes of an image after `state.pass` passes.
 Metadata image_metadata(const RunIdentity& identity, const RunState& state, const Scene& scene);

@@ -28,15 +28,6 @@ namespace {
 constexpr const char* run_again = "`photonlab run` makes the run again";
 constexpr const char* merge_again = "`photonlab run` merges the records again";
 
-/// What is directly in a folder, in the order of names; nothing where there is none.
-std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder) {
-    std::vector<std::filesystem::path> entries;
-    if (!std::filesystem::is_directory(folder)) return entries;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) entries.push_back(entry.path());
-    std::sort(entries.begin(), entries.end());
-    return entries;
-}
-
 /// What processes keep beside the files that they make, and leave when they are killed.
 bool is_of_work(const std::filesystem::path& file) {
     const std::string name = file.filename().string();
@@ -56,14 +47,15 @@ public:
     explicit Verifier(const std::filesystem::path& results) : results_(results) {}
 
     Verification verify() {
-        for (const std::filesystem::path& folder : entries_of(results_ / "runs"))
-            guarded(folder, [&] { check_run(folder); });
-        for (const std::filesystem::path& folder : entries_of(results_ / "ensembles"))
-            guarded(folder, [&] { check_ensemble(folder); });
-        guarded(results_, [&] { check_experiment(); });
-        guarded(results_, [&] { check_merged(); });
+        for (const std::filesystem::path& folder : entries_of(results_ / "runs")) guarded([&] { check_run(folder); });
+        guarded([&] {
+            for (const std::filesystem::path& folder : entries_of(results_ / "ensembles"))
+                guarded([&] { check_ensemble(folder); });
+        });
+        guarded([&] { check_experiment(); });
+        guarded([&] { check_merged(); });
         for (const auto& [name, run] : finished_)
-            if (run.reference) guarded(run.reference->path, [&] { check_reference(name, *run.reference); });
+            if (run.reference) guarded([&] { check_reference(name, *run.reference); });
         if (unfinished_ > 0) note(results_ / "runs", fmt::format("{} runs are not finished", unfinished_));
         return std::move(found_);
     }
@@ -79,70 +71,77 @@ private:
 
     /// What cannot be read is a fault, and the rest is gone on with.
     template <typename Step>
-    void guarded(const std::filesystem::path& file, const Step& step) {
+    void guarded(const Step& step) {
         try {
             step();
         } catch (const InputError& error) {
             found_.faults.push_back(error.what());
-        } catch (const std::filesystem::filesystem_error& error) {
-            fault(error.path1().empty() ? file : error.path1(), error.code().message());
         }
     }
 
     void check_run(const std::filesystem::path& folder) {
-        if (!std::filesystem::is_directory(folder)) return fault(folder, "is no folder of a run");
+        if (!is_folder(folder)) return fault(folder, "is no folder of a run");
         const std::filesystem::path description = folder / "run.json";
-        const std::optional<FinishedRun> run = read_finished_run(folder);
-        if (std::filesystem::exists(folder / "checkpoint"))
-            guarded(folder, [&] { require_whole_checkpoint(folder / "checkpoint"); });
-        if (!run && std::filesystem::exists(description))
+        if (is_there(folder / "checkpoint")) guarded([&] { require_whole_checkpoint(folder / "checkpoint"); });
+        std::size_t sound_files = 0;
+        const FoundRun found =
+            look_at_run(folder, [&](const FinishedRun& run) { return check_files_of(folder, run, sound_files); });
+        if (found.is_described && !found.run)
             return fault(description, fmt::format("is damaged, or another program's; {}", run_again));
-        if (!run) {
+        if (!found.run) {
             ++unfinished_;
             return;
         }
         const std::string name = folder.filename().string();
-        if (run->run != valid_text(name))
-            return fault(description, fmt::format("is of the run {}, which is not called as its folder", run->run));
-        ++found_.files;
-        check_files_of(folder, *run);
-        finished_.emplace(name, *run);
+        if (found.run->run != valid_text(name))
+            return fault(description,
+                         fmt::format("is of the run {}, which is not called as its folder", found.run->run));
+        found_.files += 1 + sound_files;
+        found_.faults.insert(found_.faults.end(), found.faults.begin(), found.faults.end());
+        finished_.emplace(name, *found.run);
         found_.runs = finished_.size();
     }
 
-    void check_files_of(const std::filesystem::path& folder, const FinishedRun& run) {
+    /// What is wrong with them; counts those with which nothing is.
+    static std::vector<std::string> check_files_of(const std::filesystem::path& folder, const FinishedRun& run,
+                                                   std::size_t& sound_files) {
+        std::vector<std::string> faults;
+        sound_files = 0;
         for (const auto& [name, stamp] : run.files) {
             const std::filesystem::path file = folder / name;
             const auto wrong = fault_of(file, stamp, Check::Everything);
             // Before it skips a run, the program reads its records and looks at the sizes of other files.
             const bool is_seen = wrong && fault_of(file, stamp, Check::Records);
             if (wrong)
-                found_.faults.push_back(fmt::format("{}; {}{}", *wrong, is_seen ? "" : "remove it, and ", run_again));
+                faults.push_back(fmt::format("{}; {}{}", *wrong, is_seen ? "" : "remove it, and ", run_again));
             else
-                ++found_.files;
+                ++sound_files;
         }
-        for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-            const std::string name = entry.path().lexically_relative(folder).generic_string();
-            if (!entry.is_directory() && name != "run.json" && !run.files.contains(name) && !is_of_work(entry.path()))
-                fault(entry.path(), "is no file of this run");
+        for (const std::filesystem::path& file : files_below(folder)) {
+            const std::string name = file.lexically_relative(folder).generic_string();
+            if (name != "run.json" && !run.files.contains(name) && !is_of_work(file))
+                faults.push_back(file.string() + ": is no file of this run");
         }
+        return faults;
     }
 
     void check_ensemble(const std::filesystem::path& folder) {
         if (is_of_work(folder)) return;
-        if (!std::filesystem::is_directory(folder)) return fault(folder, "is no folder of sums over seeds");
+        if (!is_folder(folder)) return fault(folder, "is no folder of sums over seeds");
         const std::filesystem::path description = folder / "ensemble.json";
         Sums& sums = sums_[valid_text("ensembles/" + folder.filename().string())];
-        if (!std::filesystem::exists(description)) {
+        const std::optional<std::string> text = read_if_there(description);
+        if (!text) {
             fault(description, "is missing; `photonlab run` writes it again");
-        } else if (const auto json = checked_json(read_text_file(description))) {
-            sums.key = json->value("key", "");
+        } else if (const auto json = checked_json(*text)) {
+            const Json key = json->value("key", Json());
+            if (key.is_string()) sums.key = key.get<std::string>();
             ++found_.files;
         } else {
             fault(description, "is damaged, or another program's; `photonlab run` writes it again");
         }
         for (const std::filesystem::path& slot : entries_of(folder))
-            if (slot != description && !is_of_work(slot)) guarded(slot, [&] { check_slot(slot, sums); });
+            if (slot != description && !is_of_work(slot)) guarded([&] { check_slot(slot, sums); });
     }
 
     void check_slot(const std::filesystem::path& file, Sums& sums) {
@@ -173,7 +172,7 @@ private:
         const std::optional<std::string> experiment = experiment_of_results(results_);
         if (experiment)
             ++found_.files;
-        else if (std::filesystem::exists(description))
+        else if (is_there(description))
             fault(description, "is damaged; remove it, and `photonlab run` writes it again");
         else
             fault(description, "is missing; `photonlab run` writes it again");
@@ -186,31 +185,31 @@ private:
     /// The merged tables: whether they are what merged.json says, and whether their rows are those of the runs.
     void check_merged() {
         const std::filesystem::path description = results_ / "merged.json";
-        const bool is_there = std::filesystem::exists(description);
+        const bool is_described = is_there(description);
         const std::optional<MergedFiles> merged = read_merged_files(results_);
-        if (!merged && (is_there || !finished_.empty()))
-            fault(description, fmt::format("is {}; {}", is_there ? "damaged" : "missing", merge_again));
+        if (!merged && (is_described || !finished_.empty()))
+            fault(description, fmt::format("is {}; {}", is_described ? "damaged" : "missing", merge_again));
         if (merged) ++found_.files;
         for (const char* name : {"iterations.csv", "probes.csv"}) {
             std::vector<FileStamp> stamps;
             if (merged && merged->files.contains(name)) stamps = merged->files.at(name);
-            guarded(results_ / name, [&] { check_table(name, stamps, merged.has_value()); });
+            guarded([&] { check_table(name, stamps, merged.has_value()); });
         }
     }
 
     void check_table(const std::string& name, const std::vector<FileStamp>& stamps, bool is_described) {
         const std::filesystem::path file = results_ / name;
-        if (!std::filesystem::exists(file)) {
+        const std::optional<std::string> text = read_if_there(file);
+        if (!text) {
             if (!stamps.empty()) fault(file, fmt::format("is missing; {}", merge_again));
             return;
         }
         if (is_described && stamps.empty()) return fault(file, "is no table of these results");
-        const std::string text = read_text_file(file);
-        if (std::find(stamps.begin(), stamps.end(), stamp_of_text(text)) != stamps.end())
+        if (std::find(stamps.begin(), stamps.end(), stamp_of_text(*text)) != stamps.end())
             ++found_.files;
         else if (is_described)
-            found_.faults.push_back(fmt::format("{}; {}", *fault_of_text(file, text, stamps[0]), merge_again));
-        const std::set<std::string> merged = check_rows(name, text);
+            found_.faults.push_back(fmt::format("{}; {}", *fault_of_text(file, *text, stamps[0]), merge_again));
+        const std::set<std::string> merged = check_rows(name, *text);
         if (name != "iterations.csv") return;
         check_sums_of(merged);
         if (merged.size() < finished_.size())
@@ -227,9 +226,9 @@ private:
         };
         std::map<std::string, OwnRows> known;  // by the first of them
         for (const auto& [name, run] : finished_) {
-            const std::filesystem::path file = results_ / "runs" / name / table;
-            if (!run.files.contains(table) || !std::filesystem::exists(file)) continue;
-            const std::string rows = rows_after_header(read_text_file(file));
+            const auto own = run.files.contains(table) ? read_if_there(results_ / "runs" / name / table) : std::nullopt;
+            if (!own) continue;
+            const std::string rows = rows_after_header(*own);
             known[rows.substr(0, rows.find('\n'))] = {name, rows};
         }
         std::set<std::string> merged;
@@ -289,7 +288,7 @@ private:
         if (!references_.emplace(reference.path, reference.key).second) return;
         for (const std::filesystem::path& start :
              {std::filesystem::path(reference.working_directory), std::filesystem::path("."), results_}) {
-            if (!std::filesystem::exists(start / reference.path)) continue;
+            if (!is_there(start / reference.path)) continue;
             if (load_reference(start / reference.path, std::nullopt).key != reference.key)
                 note(start / reference.path, fmt::format("is not as it was when {} was judged by it", run));
             return;
@@ -308,8 +307,8 @@ private:
 }  // namespace
 
 Verification verify_results(const std::filesystem::path& results) {
-    if (!std::filesystem::is_directory(results)) throw InputError(results.string(), "is no folder");
-    if (!std::filesystem::is_directory(results / "runs"))
+    if (!is_folder(results)) throw InputError(results.string(), "is no folder");
+    if (!is_folder(results / "runs"))
         throw InputError(results.string(), "holds no results: expected the folder runs, as `photonlab run` makes it");
     return Verifier(results).verify();
 }

@@ -26,6 +26,7 @@ namespace photonlab {
 struct Limits {
     rlim_t file_bytes = 0;
     rlim_t address_bytes = 0;
+    rlim_t open_files = 0;
     bool own_process_ids = false;  ///< as in a container: its own id is 1, and it knows no other
 };
 
@@ -56,6 +57,7 @@ public:
         ::dup2(descriptor, STDERR_FILENO);
         limit(RLIMIT_FSIZE, limits.file_bytes);
         limit(RLIMIT_AS, limits.address_bytes);
+        limit(RLIMIT_NOFILE, limits.open_files);
         ::execv(pointers[0], pointers.data());
         ::_exit(127);
     }

@@ -43,6 +43,37 @@ TEST_F(Files, AreReadAsTheyAre) {
     EXPECT_NO_THROW(require_ordinary_file(folder_ / "empty"));
 }
 
+TEST_F(Files, ThatAreNotThereAreToldFromThoseThatCannotBeRead) {
+    write_text_file(folder_ / "a", "text");
+    EXPECT_EQ(read_if_there(folder_ / "a"), "text");
+    for (const auto& none : {folder_ / "none", folder_ / "none/none", folder_ / "a/none"}) {
+        EXPECT_EQ(read_if_there(none), std::nullopt) << none;
+        EXPECT_FALSE(is_there(none)) << none;
+    }
+    EXPECT_THROW(read_if_there(folder_), InputError);
+    EXPECT_TRUE(is_there(folder_));
+    const std::filesystem::path long_name = folder_ / std::string(256, 'a');
+    EXPECT_THROW(read_if_there(long_name), InputError);
+    EXPECT_THROW(is_there(long_name), InputError);
+    EXPECT_FALSE(is_folder(long_name));
+}
+
+TEST_F(Files, InAFolderAreListedByNameAndRemovedWithAllBelow) {
+    for (const char* name : {"b", "a", "deep/er/c", "deep/d"}) {
+        std::filesystem::create_directories((folder_ / name).parent_path());
+        write_text_file(folder_ / name, "text");
+    }
+    std::filesystem::create_symlink(folder_, folder_ / "deep/round");
+    EXPECT_EQ(entries_of(folder_), (std::vector{folder_ / "a", folder_ / "b", folder_ / "deep"}));
+    EXPECT_EQ(entries_of(folder_ / "none"), std::vector<std::filesystem::path>{});
+    EXPECT_THROW(entries_of(folder_ / "a"), InputError);
+    EXPECT_EQ(files_below(folder_), (std::vector{folder_ / "a", folder_ / "b", folder_ / "deep/d",
+                                                 folder_ / "deep/er/c", folder_ / "deep/round"}));
+    remove_if_there(folder_ / "deep");
+    remove_if_there(folder_ / "none");
+    EXPECT_EQ(entries_of(folder_), (std::vector{folder_ / "a", folder_ / "b"}));
+}
+
 TEST_F(Files, ThatHaveNoEndOrWouldBeWaitedForAreRefused) {
     ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
     std::filesystem::create_symlink(folder_ / "pipe", folder_ / "link");

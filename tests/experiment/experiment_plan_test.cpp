@@ -87,6 +87,15 @@ TEST_F(ExperimentPlan, RunsAreComparedWithThoseOfTheirSeedAlone) {
     EXPECT_LE(comparisons, 4 * prepared.runs.size());
 }
 
+// Each has a lock while its group is made.
+TEST_F(ExperimentPlan, GroupsAreNoLargerThanThereCanBeOpenFiles) {
+    const Experiment one = experiment("1");
+    const std::vector<PreparedRun> runs(600, prepare_experiment(one, results()).runs.at(0));
+    std::vector<std::size_t> sizes;
+    for (const RunsTogether& group : runs_together(runs)) sizes.push_back(group.size());
+    EXPECT_EQ(sizes, (std::vector<std::size_t>{256, 256, 88}));
+}
+
 TEST_F(ExperimentPlan, APointIsEstimatedOnceHoweverManySeedsItHas) {
     const Experiment many = experiment("500");
     std::size_t estimates = 0;
@@ -123,7 +132,7 @@ TEST_F(ExperimentPlan, WhereAllIsFinishedNothingIsWritten) {
     FileEvents events(results());
     const ExperimentOutcome outcome = run_experiment(some, prepare_experiment(some, results()), results());
     EXPECT_EQ(outcome.skipped, 72u);
-    EXPECT_EQ(outcome.merged, 72u);
+    EXPECT_EQ(outcome.merged->runs, 72u);
     for (const auto& [what, count] : events.counts()) EXPECT_FALSE(what.ends_with("written")) << what << ' ' << count;
 }
 

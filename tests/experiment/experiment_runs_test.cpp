@@ -40,7 +40,7 @@ protected:
 TEST_F(ExperimentRuns, RecordsEveryRunPassAndComponent) {
     const ExperimentOutcome outcome = run();
     EXPECT_EQ(outcome.ran, 8u);
-    EXPECT_EQ(outcome.merged, 8u);
+    EXPECT_EQ(outcome.merged->runs, 8u);
     const std::vector<Row> rows = read_rows(outcome.records);
     ASSERT_EQ(rows.size(), 8u * 4u * 4u);  // runs, passes 0 1 2 3, components
 
@@ -167,7 +167,7 @@ TEST_F(ExperimentRuns, ThreadsAndTitleAreNotWhatARunIsKnownBy) {
     Experiment experiment = read_experiment(folder_ / "tiny.toml");
     ExperimentOutcome outcome = run_experiment(experiment, prepare_experiment(experiment, results()), results());
     EXPECT_EQ(outcome.ran, 0u);
-    EXPECT_EQ(outcome.merged, 8u);
+    EXPECT_EQ(outcome.merged->runs, 8u);
     EXPECT_EQ(read_text_file(results() / "iterations.csv"), before);
 
     // What is made now says so, beside rows of other threads, and joins the sums.
@@ -186,10 +186,30 @@ TEST_F(ExperimentRuns, OnlyTheSelectedRunsAreMade) {
     EXPECT_EQ(run("", "walls_ppm_seed-1").ran, 1u);
     const ExperimentOutcome outcome = run("", "*_seed-2");
     EXPECT_EQ(outcome.ran, 4u);
-    EXPECT_EQ(outcome.merged, 5u);
+    EXPECT_EQ(outcome.merged->runs, 5u);
     const std::string message = message_of([&] { run("", "walls_pmp_*"); });
-    EXPECT_TRUE(message.starts_with("--only: unknown run \"walls_pmp_*\"; known here: walls_ppm_seed-1, "))
-        << message;
+    EXPECT_TRUE(message.starts_with("--only: unknown run \"walls_pmp_*\"; known here: walls_ppm_seed-1, ")) << message;
+}
+
+TEST_F(ExperimentRuns, WhereASceneThatIsNotSelectedCannotBeLoadedTheRecordsStay) {
+    folder_.write("other/scene.xml", two_walls_scene);
+    folder_.write(
+        "two.toml",
+        "passes = 2\nthreads = 1\nphotons_per_pass = 400\nscenes = [\"walls/scene.xml\", \"other/scene.xml\"]\n"
+        "[[method]]\nintegrator = \"ppm\"\n[[method]]\nintegrator = \"path\"\n");
+    const Experiment two = read_experiment(folder_ / "two.toml");
+    run_experiment(two, prepare_experiment(two, results(), "*_ppm_*"), results());
+    const std::string before = read_text_file(results() / "iterations.csv");
+    folder_.write("other/scene.xml", "<scene>");
+    const ExperimentOutcome outcome =
+        run_experiment(two, prepare_experiment(two, results(), "walls_path_*"), results());
+    EXPECT_EQ(outcome.ran, 1u);
+    EXPECT_FALSE(outcome.merged);
+    EXPECT_NE(outcome.why_not_merged.find("other/scene.xml"), std::string::npos) << outcome.why_not_merged;
+    EXPECT_EQ(read_text_file(results() / "iterations.csv"), before);
+
+    folder_.write("other/scene.xml", two_walls_scene);
+    EXPECT_EQ(run_experiment(two, prepare_experiment(two, results(), "walls_path_*"), results()).merged->runs, 3u);
 }
 
 TEST_F(ExperimentRuns, ARadiusThatTheSceneCannotResolveIsRefusedBeforeAnythingRuns) {

@@ -57,6 +57,10 @@ TEST(KeptFiles, AFaultNamesTheFileAndWhatIsWrong) {
     folder.write("a.csv", "row");
     EXPECT_EQ(fault_of(table, stamp, Check::Sizes), table.string() + ": has 3 bytes, and had 4 when it was written");
     std::filesystem::remove(table);
+    std::filesystem::create_symlink("/proc/self/status", table);  // has no size, and cannot be read as it is
+    EXPECT_EQ(fault_of(table, {0, stamp.hash}, Check::Records),
+              table.string() + ": expected a file that has a size, this is one of the kernel's");
+    std::filesystem::remove(table);
     EXPECT_EQ(fault_of(table, stamp, Check::Sizes), table.string() + ": No such file or directory");
 }
 

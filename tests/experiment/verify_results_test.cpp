@@ -147,9 +147,9 @@ TEST_F(VerifyResults, AnImageOrASumOfAnotherSizeIsMadeAgain) {
 TEST_F(VerifyResults, ADamagedRunThatIsNotSelectedIsNamed) {
     folder_.write("results/runs/walls_ppm_seed-2/probes.csv", "");
     const ExperimentOutcome outcome = run("walls_path_*");
-    ASSERT_EQ(outcome.left_out.size(), 1u);
-    EXPECT_NE(outcome.left_out[0].find("walls_ppm_seed-2/probes.csv: has 0 bytes, and had "), std::string::npos);
-    EXPECT_EQ(outcome.merged, 5u);
+    ASSERT_EQ(outcome.merged->faults.size(), 1u);
+    EXPECT_NE(outcome.merged->faults[0].find("walls_ppm_seed-2/probes.csv: has 0 bytes, and had "), std::string::npos);
+    EXPECT_EQ(outcome.merged->runs, 5u);
 }
 
 TEST_F(VerifyResults, ForeignFilesAreNamed) {
