@@ -4,7 +4,7 @@
 // ones, and slots are independent groups for a jackknife.
 //
 //     RESULTS/ensembles/POINT/ensemble.json    what the sums are of, with its checksum (kept_files.h);
-//                                              analysis/decomposition.py reads it
+//                                              `analysis decomposition` reads it
 //     RESULTS/ensembles/POINT/slot-00.exr      layers: "emission", and pass-000128-direct, pass-000128-gathered, ... of
 //                                              every recorded pass
 //

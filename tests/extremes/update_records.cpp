@@ -1,6 +1,6 @@
 // Writes how far the update's radius, count and estimate are from their closed form: by passes up to a million, by
 // alpha after a million passes, and by photons that come one a pass. As the program keeps them, and as the 2008
-// paper prints the update, in double and in float. analysis/extremes.py draws it.
+// paper prints the update, in double and in float. `analysis extremes` draws it.
 
 #include <cstdio>
 #include <initializer_list>

@@ -1,0 +1,1 @@
+"""What figures share: their looks, pictures on a screen, and files."""

@@ -1,0 +1,1 @@
+"""The page of a results folder, RESULTS/report.html."""

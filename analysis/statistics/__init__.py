@@ -1,0 +1,1 @@
+"""What is computed from records: means over seeds, standard errors, bias and variance, slopes, times. Nothing here draws."""
