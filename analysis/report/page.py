@@ -65,10 +65,10 @@ def page(results, seeds):
     experiments = ", ".join(distinct(rows["experiment"]))
     title = " / ".join(distinct(found(run, "title") for run in runs.values())) or experiments
     return Template(part("page.html")).substitute(
-        sections, experiments=escape(experiments), title=escape(title), style=part("report.css"), facts=facts(rows, runs),
+        sections, experiments=escape(experiments), title=escape(title), style=part("page.css"), facts=facts(rows, runs),
         missing=missing_list(missing), contents=" · ".join(f'<a href="#{anchor}">{name}</a>' for anchor, name, there in anchors if there),
         scenes=scene_table(rows, runs), results="".join(error_table(scene) + cost_table(scene, runs) for scene in results.scenes()),
-        data=data_of(scenes), script=part("report.js"))
+        data=data_of(scenes), script=part("page.js") + part("viewer.js"))
 
 
 def make(results, options):
