@@ -16,10 +16,10 @@
 #include "core/hash.h"
 #include "core/text.h"
 #include "scene/material_reader.h"
-#include "scene/properties.h"
+#include "scene/mitsuba/properties.h"
+#include "scene/mitsuba/transform.h"
+#include "scene/mitsuba/xml_reader.h"
 #include "scene/shape_reader.h"
-#include "scene/transform.h"
-#include "scene/xml_reader.h"
 
 namespace photonlab {
 

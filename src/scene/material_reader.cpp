@@ -7,7 +7,7 @@
 #include <cctype>
 
 #include "core/error.h"
-#include "scene/properties.h"
+#include "scene/mitsuba/properties.h"
 
 namespace photonlab {
 

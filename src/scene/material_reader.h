@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "scene/material.h"
-#include "scene/xml_reader.h"
+#include "scene/mitsuba/xml_reader.h"
 
 namespace photonlab {
 

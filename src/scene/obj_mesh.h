@@ -6,7 +6,7 @@
 #include <string>
 
 #include "scene/description.h"
-#include "scene/xml_reader.h"
+#include "scene/mitsuba/xml_reader.h"
 
 namespace photonlab {
 

@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "core/error.h"
+#include "scene/mitsuba/transform.h"
 #include "scene/obj_mesh.h"
-#include "scene/transform.h"
 
 namespace photonlab {
 

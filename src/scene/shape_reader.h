@@ -6,7 +6,7 @@
 #include <string>
 
 #include "scene/description.h"
-#include "scene/properties.h"
+#include "scene/mitsuba/properties.h"
 
 namespace photonlab {
 

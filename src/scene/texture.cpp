@@ -1,6 +1,6 @@
 #include "scene/texture.h"
 
-#include "scene/transform.h"
+#include "scene/mitsuba/transform.h"
 
 namespace photonlab {
 

@@ -11,7 +11,7 @@
 
 #include "core/error.h"
 #include "core/sampling.h"
-#include "scene/xml_reader.h"
+#include "scene/mitsuba/xml_reader.h"
 
 namespace photonlab {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/math.h"
-#include "scene/xml_reader.h"
+#include "scene/mitsuba/xml_reader.h"
 
 namespace photonlab {
 

@@ -1,6 +1,6 @@
 // The XML of a Mitsuba scene file without its meaning: includes followed, defaults and $names put in, both spellings of
 // names folded into one, and every element knowing the file and line where it stands and which Mitsuba it speaks to.
-// What elements mean is in loader.cpp.
+// What elements mean is in scene/loader.cpp.
 
 #pragma once
 

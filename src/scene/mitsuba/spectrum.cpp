@@ -1,4 +1,4 @@
-#include "scene/spectrum.h"
+#include "scene/mitsuba/spectrum.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <array>
 
 #include "core/error.h"
-#include "scene/xml_reader.h"
+#include "scene/mitsuba/xml_reader.h"
 
 namespace photonlab {
 

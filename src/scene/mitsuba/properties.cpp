@@ -1,12 +1,12 @@
-#include "scene/properties.h"
+#include "scene/mitsuba/properties.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "core/error.h"
 #include "image/read_image.h"
-#include "scene/spectrum.h"
-#include "scene/transform.h"
+#include "scene/mitsuba/spectrum.h"
+#include "scene/mitsuba/transform.h"
 
 namespace photonlab {
 

@@ -1,4 +1,4 @@
-#include "scene/transform.h"
+#include "scene/mitsuba/transform.h"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/math.h"
-#include "scene/xml_reader.h"
+#include "scene/mitsuba/xml_reader.h"
 
 namespace photonlab {
 

@@ -1,4 +1,4 @@
-#include "scene/xml_reader.h"
+#include "scene/mitsuba/xml_reader.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
