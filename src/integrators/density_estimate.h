@@ -28,8 +28,8 @@ public:
     FluxSum(const Scene& scene, const HitPoint& point, int max_depth)
         : camera_edges_(point.camera_edges), max_depth_(max_depth) {
         const Bsdf bsdf = bsdf_at(scene.materials[point.material], point.texture_coordinate, false);
-        if (const auto* diffuse = std::get_if<Diffuse>(&bsdf))
-            lambertian_ = diffuse->reflectance * static_cast<float>(1.0 / pi);
+        if (const std::optional<Color> uniform = uniform_value(bsdf))
+            uniform_ = *uniform;
         else
             glossy_.emplace(Glossy{bsdf, make_frame(point.normal), make_frame(point.normal).to_local(point.outgoing)});
     }
@@ -48,7 +48,7 @@ public:
     }
 
     /// Relative to Scene::total_power, per steradian.
-    ColorD flux() const { return glossy_ ? sum_ : sum_ * ColorD(lambertian_); }
+    ColorD flux() const { return glossy_ ? sum_ : sum_ * ColorD(uniform_); }
     std::uint64_t count() const { return count_; }
 
 private:
@@ -60,7 +60,7 @@ private:
 
     ColorD sum_ = ColorD(0.0);  // of flux times BRDF; of flux alone where the BRDF is a constant
     std::uint64_t count_ = 0;
-    Color lambertian_ = Color(0.0f);  // that constant
+    Color uniform_ = Color(0.0f);  // that constant
     std::uint16_t camera_edges_;
     int max_depth_;
     std::optional<Glossy> glossy_;

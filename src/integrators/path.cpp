@@ -37,7 +37,7 @@ PathSample trace_path(const Scene& scene, const HitPoint& point, int max_depth, 
         if (!depth_allows(max_depth, point.camera_edges + reflections)) break;
         ColorD& layer = reflections == 1 ? result.direct : result.gathered;
 
-        if (!is_specular(surface.bsdf)) {
+        if (is_scattering(surface.bsdf)) {
             if (const auto light = connect_to_light(scene, surface, outgoing, random)) {
                 const double weight = light->light_density > 0.0
                                           ? light->light_density / (light->light_density + light->bsdf_density)

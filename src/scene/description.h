@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/math.h"
-#include "scene/material.h"
+#include "scene/materials/material.h"
 
 namespace photonlab {
 

@@ -15,7 +15,7 @@
 #include "core/error.h"
 #include "core/hash.h"
 #include "core/text.h"
-#include "scene/material_reader.h"
+#include "scene/materials/material_reader.h"
 #include "scene/mitsuba/properties.h"
 #include "scene/mitsuba/transform.h"
 #include "scene/mitsuba/xml_reader.h"
@@ -119,6 +119,13 @@ private:
         return *found->second;
     }
 
+    SceneSource source() {
+        return {.resolve = [this](const XmlElement& other) -> const XmlElement& { return resolve(other); },
+                .bytes_read = bytes_read_,
+                .texture_pixels = texture_pixels_,
+                .note = [this](const std::string& sentence) { note(sentence); }};
+    }
+
     // -----------------------------------------------------------------------------------------------------------------
     // Materials
 
@@ -128,11 +135,7 @@ private:
         if (scene_.materials.size() >
             std::numeric_limits<std::uint16_t>::max())  // which is what a hit point has for it
             throw InputError(element.place, "expected at most 65536 materials");
-        Material material = read_material(
-            element, {.resolve = [this](const XmlElement& other) -> const XmlElement& { return resolve(other); },
-                      .bytes_read = bytes_read_,
-                      .texture_pixels = texture_pixels_,
-                      .note = [this](const std::string& sentence) { note(sentence); }});
+        Material material = read_material(element, source());
         const std::string id = element.attribute("id");
         material.id = id.empty() ? element.attribute("type") : id;
         material.place = element.place;
@@ -165,7 +168,7 @@ private:
         shape.material = bsdf ? material_index(*bsdf) : default_material(shape.radiance.has_value());
         shape.geometry = read_geometry(element, properties,
                                        {.has_bsdf = bsdf != nullptr,
-                                        .has_texture = scene_.materials[shape.material].texture != nullptr,
+                                        .has_texture = !scene_.materials[shape.material].textures.empty(),
                                         .bytes_read = bytes_read_,
                                         .note = [this](const std::string& sentence) { note(sentence); }});
         properties.require_all_known();

@@ -85,35 +85,8 @@ void require_mesh(const MeshDescription& mesh, const std::string& place) {
             throw InputError(place, fmt::format("texture coordinates {} are not finite", i + 1));
 }
 
-void require_in_unit_range(const Material& material, std::string_view what, const Color& color) {
-    if (!is_finite(color) || std::min({color.x, color.y, color.z}) < 0.0f || max_channel(color) > 1.0f)
-        fail(material.place, fmt::format("material \"{}\": {}: expected values in [0, 1], got {} {} {}", material.id,
-                                         what, color.x, color.y, color.z));
-}
-
-void require_material(const Material& material) {
-    if (const auto* diffuse = std::get_if<Diffuse>(&material.bsdf)) {
-        require_in_unit_range(material, "reflectance", diffuse->reflectance);
-    } else if (const auto* conductor = std::get_if<Conductor>(&material.bsdf)) {
-        require_in_unit_range(material, "reflectance", conductor->reflectance);
-        for (const Color& index : {conductor->eta, conductor->k})
-            if (!is_finite(index) || std::min({index.x, index.y, index.z}) < 0.0f)
-                fail(material.place, fmt::format("material \"{}\": expected eta and k of at least 0", material.id));
-    } else if (const auto* dielectric = std::get_if<Dielectric>(&material.bsdf)) {
-        require_in_unit_range(material, "reflectance", dielectric->reflectance);
-        require_in_unit_range(material, "transmittance", dielectric->transmittance);
-        for (const float index : {dielectric->index_here, dielectric->index_beyond})
-            if (!std::isfinite(index) || !(index > 0.0f))
-                fail(material.place,
-                     fmt::format("material \"{}\": expected an index above 0, got {}", material.id, index));
-    } else if (const auto* merl = std::get_if<Merl>(&material.bsdf)) {
-        if (!merl->table || merl->table != material.table.get())
-            fail(material.place, fmt::format("material \"{}\": expected its own table", material.id));
-    }
-}
-
 void require_valid(const SceneDescription& description) {
-    for (const Material& material : description.materials) require_material(material);
+    for (const Material& material : description.materials) require_valid(material);
     for (const ShapeDescription& shape : description.shapes) {
         if (shape.material >= description.materials.size())
             throw InputError(shape.place,
@@ -371,7 +344,7 @@ Scene build_scene(const SceneDescription& description, std::optional<Resolution>
     scene.max_depth = description.max_depth;
     if (!bounds.is_empty()) scene.bounding_radius = to_unit_box.length(0.5 * (bounds.upper - bounds.lower).length());
     for (const ShapeDescription& shape : description.shapes)
-        scene.shapes.push_back(make_shape(shape, to_unit_box, scene.materials[shape.material].texture != nullptr));
+        scene.shapes.push_back(make_shape(shape, to_unit_box, !scene.materials[shape.material].textures.empty()));
     add_emitters(scene, description, to_unit_box);
     scene.camera = make_camera(description.camera, resolution, to_unit_box);
     scene.embree = build_embree_scene(scene.shapes);

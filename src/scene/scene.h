@@ -16,7 +16,7 @@
 
 #include "core/math.h"
 #include "scene/description.h"
-#include "scene/material.h"
+#include "scene/materials/material.h"
 
 namespace photonlab {
 

@@ -117,7 +117,8 @@ private:
             ++tile.nonfinite;
             return;
         }
-        if (is_specular(surface->bsdf)) return branch_on(branch, *surface, distance, pending, tile);
+        if (is_specular(surface->bsdf)) branch_on(branch, *surface, distance, pending, tile);
+        if (!is_scattering(surface->bsdf)) return;
         tile.points.push_back({.position = surface->position,
                                .normal = surface->frame.normal,
                                .geometric_normal = surface->geometric_normal,
@@ -127,7 +128,7 @@ private:
                                .material = static_cast<std::uint16_t>(surface->material),
                                .camera_edges = static_cast<std::uint16_t>(branch.edges),
                                .texture_coordinate = surface->texture_coordinate},
-                              std::holds_alternative<Diffuse>(surface->bsdf));
+                              uniform_value(surface->bsdf).has_value());
         tile.footprints.push_back(footprint);
     }
 

@@ -11,8 +11,8 @@ HitPointList::Kept HitPointList::kept_for(const Scene& scene) {
     Kept kept{false, false};
     for (const Shape& shape : scene.shapes) {
         const Material& material = scene.materials[shape.material];
-        if (!std::holds_alternative<Diffuse>(material.bsdf) && !is_specular(material.bsdf)) kept.outgoing = true;
-        if (material.texture) kept.texture_coordinates = true;
+        if (is_scattering(material.bsdf) && !uniform_value(material.bsdf)) kept.outgoing = true;
+        if (!material.textures.empty()) kept.texture_coordinates = true;
     }
     return kept;
 }

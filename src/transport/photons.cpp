@@ -44,8 +44,7 @@ void trace_path(const Scene& scene, const PhotonSettings& settings, RandomStream
         const std::optional<Surface> surface = orient(scene, *hit, arriving);
         if (!surface) return;
 
-        const bool specular = is_specular(surface->bsdf);
-        if (!specular && (edges > 1 || settings.store_direct)) {
+        if (is_scattering(surface->bsdf) && (edges > 1 || settings.store_direct)) {
             const Vector& normal = surface->frame.normal;
             const Vector& geometric = surface->geometric_normal;
             const Color carried =
@@ -62,11 +61,11 @@ void trace_path(const Scene& scene, const PhotonSettings& settings, RandomStream
         }
         if (edges == edge_limit) break;
 
-        only_specular = only_specular && specular;
         const std::optional<BsdfSample> bounce =
             sample(surface->bsdf, surface->frame.to_local(arriving), Carried::Flux, random.next_2d());
         const float survival_draw = random.next();
         if (!bounce) return;
+        only_specular = only_specular && bounce->density == 0.0f;
         const float survival = std::min(max_channel(bounce->weight), highest_survival);
         if (survival_draw >= survival) return;
         const Vector leaving = surface->frame.to_world(bounce->incoming);

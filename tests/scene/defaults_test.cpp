@@ -42,6 +42,10 @@ const Material& material(const SceneDescription& scene) {
     return scene.materials.at(scene.shapes.at(0).material);
 }
 
+const Bitmap& bitmap_of(const SceneDescription& scene) {
+    return std::get<Bitmap>(*material(scene).textures.at(0).texture);
+}
+
 Values reflectance(const SceneDescription& scene) {
     return numbers(ColorD(std::get<Diffuse>(material(scene).bsdf).reflectance));
 }
@@ -108,7 +112,7 @@ std::vector<Default> defaults() {
         return Values{double(scene.camera.width), double(scene.camera.height)};
     };
     const auto middle = [](const SceneDescription& scene) {
-        return numbers(ColorD(material(scene).texture->color_at({0.5f, 0.5f})));
+        return numbers(ColorD(bitmap_of(scene).color_at({0.5f, 0.5f})));
     };
     const auto max_depth = [](const SceneDescription& scene) { return Values{double(scene.max_depth)}; };
     const auto mean_reflectance = reflectance;
@@ -208,7 +212,7 @@ std::vector<Default> defaults() {
          "0.6 3",
          "bitmap.cpp: false, and floats are linear all the same",
          shape(bitmap),
-         [](const SceneDescription& scene) { return numbers(ColorD(material(scene).texture->image.pixels.at(0))); },
+         [](const SceneDescription& scene) { return numbers(ColorD(bitmap_of(scene).image.pixels.at(0))); },
          {0.25, 0.25, 0.25}},
         {"bitmap", "filter_type", "3", "bitmap.cpp: bilinear", shape(bitmap), middle, {0.375, 0.375, 0.375}},
         {"bitmap",
@@ -220,14 +224,14 @@ std::vector<Default> defaults() {
          {0.375, 0.375, 0.375}},
         {"bitmap", "gamma", "0.6", "bitmap.cpp: that of the file", shape(bitmap), middle, {0.375, 0.375, 0.375}},
         {"bitmap", "to_uv", "0.6 3", "bitmap.cpp, texture.cpp: uscale, uoffset", shape(bitmap),
-         [](const SceneDescription& scene) { return numbers(material(scene).texture->to_uv); }, numbers(Matrix())},
+         [](const SceneDescription& scene) { return numbers(bitmap_of(scene).to_uv); }, numbers(Matrix())},
         {"bitmap",
          "wrap_mode",
          "0.6 3",
          "bitmap.cpp: repeat",
          shape(bitmap),
          [](const SceneDescription& scene) {
-             return numbers(ColorD(material(scene).texture->color_at({7.25f, -3.25f})));
+             return numbers(ColorD(bitmap_of(scene).color_at({7.25f, -3.25f})));
          },
          {0.25, 0.25, 0.25}},
 

@@ -281,7 +281,7 @@ TEST_F(FamiliesTest, BitmapsHaveOtherPropertiesIn06) {
                                    "<shape type='sphere'><bsdf type='diffuse'><texture type='bitmap' "
                                    "name='reflectance'><string name='filename' value='grey.hdr'/>" +
                                        inside + "</texture></bsdf></shape>");
-        return *scene.materials.at(0).texture;
+        return std::get<Bitmap>(*scene.materials.at(0).textures.at(0).texture);
     };
     const auto moved = [&](const std::string& inside) {
         const Matrix& to_uv = texture("0.6.0", inside).to_uv;

@@ -2,7 +2,7 @@
 //
 // The chi-square fails by chance with probability 1e-4; its seed is fixed.
 
-#include "scene/material.h"
+#include "scene/materials/material.h"
 
 #include <gtest/gtest.h>
 

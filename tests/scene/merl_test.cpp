@@ -176,7 +176,8 @@ TEST(Merl, SamplesByItsDensity) {
                 return sine * density(material->bsdf, outgoing,
                                       Vector(VectorD(sine * std::cos(phi), sine * std::sin(phi), std::cos(theta))));
             };
-            const double lost = share_of_half_vectors_reflecting_below(*material->table, at_degrees(degrees));
+            const double lost =
+                share_of_half_vectors_reflecting_below(*std::get<Merl>(material->bsdf).table, at_degrees(degrees));
             const double column = pi / 2.0 / 11.0;
             RandomStream random = test_stream(index++);
             expect_distributed(
@@ -243,7 +244,7 @@ TEST(Merl, SamplesShinyDataBetterThanTheCosineDoes) {
 }
 
 TEST(Merl, KnowsHowMuchItReflects) {
-    for (const MerlTable::Albedo& at : shiny_material().table->albedos) {
+    for (const MerlTable::Albedo& at : std::get<Merl>(shiny_material().bsdf).table->albedos) {
         const ColorD exact = albedo_of(shiny(), at_degrees(at.degrees));
         // Bins across the horizon are black when their middles are below it: at 85 degrees that takes a per cent.
         for (int channel = 0; channel < 3; ++channel)

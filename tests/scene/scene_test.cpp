@@ -235,7 +235,7 @@ TEST(IsOccluded, PointsMovedOffTwoWallsThatFaceEachOtherSeeEachOther) {
         const Vector below(random.next() - 0.5f, random.next() - 0.5f, -0.5f);
         const Vector above(random.next() - 0.5f, random.next() - 0.5f, 0.5f);
         EXPECT_FALSE(is_occluded(scene, {offset_from_surface(below, {0, 0, 1}, above - below),
-                                 offset_from_surface(above, {0, 0, -1}, below - above)}));
+                                         offset_from_surface(above, {0, 0, -1}, below - above)}));
     }
 }
 

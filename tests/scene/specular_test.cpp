@@ -12,7 +12,7 @@
 #include "core/error.h"
 #include "image/png.h"
 #include "scene/loader.h"
-#include "scene/material.h"
+#include "scene/materials/material.h"
 #include "tests/image/scratch_folder.h"
 #include "tests/scene/described.h"
 
@@ -430,15 +430,15 @@ TEST(SpecularSurfaces, OfAGlassBallTurnARayByTheClosedForm) {
 // ---------------------------------------------------------------------------------------------------------------------
 
 /// 3 x 2 pixels, each of a value of its own; exact in float32.
-Texture small_texture(const Matrix& to_uv = Matrix()) {
-    Texture texture{{3, 2, std::vector<Color>(6)}, to_uv};
+Bitmap small_texture(const Matrix& to_uv = Matrix()) {
+    Bitmap texture{{3, 2, std::vector<Color>(6)}, to_uv};
     const float values[] = {0.0f, 0.25f, 1.0f, 0.5f, 0.75f, 0.125f};
     for (std::size_t i = 0; i < 6; ++i) texture.image.pixels[i] = Color(values[i], 1.0f - values[i], 0.5f * values[i]);
     return texture;
 }
 
 TEST(Texture, HasItsPixelsAtTheirCentresAndItsFirstRowAtZero) {
-    const Texture texture = small_texture();
+    const Bitmap texture = small_texture();
     for (int row = 0; row < 2; ++row)
         for (int column = 0; column < 3; ++column) {
             const Color& pixel = texture.image.pixels[static_cast<std::size_t>(row * 3 + column)];
@@ -449,7 +449,7 @@ TEST(Texture, HasItsPixelsAtTheirCentresAndItsFirstRowAtZero) {
 }
 
 TEST(Texture, IsBilinearBetweenPixelCentres) {
-    const Texture texture = small_texture();
+    const Bitmap texture = small_texture();
     // A third of the way from column 0 to 1, a quarter from row 0 to 1.
     const double x = 1.0 / 3.0;
     const double y = 0.25;
@@ -461,7 +461,7 @@ TEST(Texture, IsBilinearBetweenPixelCentres) {
 }
 
 TEST(Texture, RepeatsAndBlendsAcrossItsEdges) {
-    const Texture texture = small_texture();
+    const Bitmap texture = small_texture();
     // On the corner all four pixels of the image's corners meet: (0 + 1 + 0.5 + 0.125) / 4.
     for (const Imath::V2f& corner : {Imath::V2f(0, 0), Imath::V2f(1, 0), Imath::V2f(0, 1), Imath::V2f(-3, 5)})
         EXPECT_NEAR(texture.color_at(corner).x, (0.0 + 1.0 + 0.5 + 0.125) / 4.0, float_rounding);
@@ -481,8 +481,8 @@ TEST(Texture, IsLookedUpWhereToUvSends) {
     Matrix to_uv;
     to_uv.setScale(VectorD(2.0, 3.0, 1.0));
     to_uv *= Matrix().setTranslation(VectorD(0.25, -0.5, 0.0));
-    const Texture moved = small_texture(to_uv);
-    const Texture plain = small_texture();
+    const Bitmap moved = small_texture(to_uv);
+    const Bitmap plain = small_texture();
     for (const Imath::V2f& uv : {Imath::V2f(0.1f, 0.2f), Imath::V2f(0.7f, 0.35f), Imath::V2f(-0.4f, 1.3f)}) {
         const Color expected = plain.color_at({2.0f * uv.x + 0.25f, 3.0f * uv.y - 0.5f});
         for (int channel = 0; channel < 3; ++channel) EXPECT_NEAR(moved.color_at(uv)[channel], expected[channel], 1e-5);
@@ -493,7 +493,7 @@ TEST(Texture, TakesThePlaceOfTheReflectanceInAScene) {
     SceneDescription description = describe({floor_of_eight()});
     auto& mesh = std::get<MeshDescription>(description.shapes[0].geometry);
     mesh.texture_coordinates = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-    description.materials[0].texture = std::make_shared<Texture>(small_texture());
+    description.materials[0].textures = {textured(&Diffuse::reflectance, std::make_shared<Texture>(small_texture()))};
     const Scene scene = build_scene(description);
     // The floor is [-4, 4]^2: (u, v) = (1/6, 3/4) is the centre of row 1, column 0.
     const auto surface = seen_from(scene, to_box(scene, {-4.0 + 8.0 / 6.0, 2.0, 3.0}), {0.0f, 0.0f, -1.0f});
@@ -504,14 +504,16 @@ TEST(Texture, TakesThePlaceOfTheReflectanceInAScene) {
 class BitmapFile : public ::testing::Test {
 protected:
     /// The texture of a scene file with one diffuse bitmap; `options` goes inside the <texture>.
-    std::shared_ptr<const Texture> load(const std::string& file, const std::string& options = "") const {
+    std::optional<Bitmap> load(const std::string& file, const std::string& options = "") const {
         std::ofstream(folder_ / "scene.xml")
             << "<scene version='3.0.0'><sensor type='perspective'/>\n"
                "<shape type='rectangle'><bsdf type='diffuse'><texture type='bitmap' name='reflectance'>\n"
                "<string name='filename' value='"
             << file << "'/>" << options << "</texture></bsdf></shape></scene>";
         const SceneDescription description = load_scene_file(folder_ / "scene.xml");
-        return description.materials.at(description.shapes.at(0).material).texture;
+        const Material& material = description.materials.at(description.shapes.at(0).material);
+        if (material.textures.empty()) return std::nullopt;
+        return std::get<Bitmap>(*material.textures.front().texture);
     }
 
     ScratchFolder folder_;

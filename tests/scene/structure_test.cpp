@@ -44,7 +44,7 @@ TEST_F(StructureTest, AnAliasMayNameALightOrATexture) {
                                "</texture><alias id='grey' as='gray'/><shape type='cube'><ref id='light'/>"
                                "<bsdf type='diffuse'><ref name='reflectance' id='gray'/></bsdf></shape>");
     EXPECT_TRUE(scene.shapes.at(0).radiance);
-    EXPECT_TRUE(scene.materials.at(0).texture);
+    EXPECT_EQ(scene.materials.at(0).textures.size(), 1u);
 }
 
 TEST_F(StructureTest, ALightOfTheSceneShinesFromTheShapeThatNamesIt) {

@@ -200,7 +200,8 @@ TEST_F(TextureCoordinatesTest, OfCornersWithoutAnyAreZeroWhereOthersHaveSome) {
 // bitmap.cpp: v = 0 is the first row, above; OBJ files have it below, which flip_tex_coords mends.
 TEST_F(TextureCoordinatesTest, FindTheCornerOfTheImage) {
     const auto colour_at = [](const Scene& scene, const Hit& hit) {
-        return scene.materials[scene.shapes[hit.shape].material].texture->color_at(hit.texture_coordinate);
+        return color_at(*scene.materials[scene.shapes[hit.shape].material].textures.at(0).texture,
+                        hit.texture_coordinate);
     };
     const Color red(1, 0, 0), green(0, 1, 0), blue(0, 0, 1), all(1, 1, 1);
     for (const std::string version : {"0.6.0", "3.0.0"}) {

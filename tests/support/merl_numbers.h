@@ -9,7 +9,7 @@
 #include <functional>
 #include <vector>
 
-#include "scene/material.h"
+#include "scene/materials/material.h"
 
 namespace photonlab::test {
 
@@ -67,7 +67,7 @@ inline std::vector<double> numbers_of(const Formula& formula) {
 }
 
 inline Material measured(std::shared_ptr<const MerlTable> table) {
-    return {.id = "measured", .bsdf = Merl{table.get()}, .table = table};
+    return {.id = "measured", .bsdf = Merl{table.get()}, .data = table};
 }
 
 inline Material measured(const Formula& formula) {

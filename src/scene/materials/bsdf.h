@@ -1,15 +1,23 @@
-// What every material's BSDF speaks in: directions are unit, in the local frame of the shading normal (z along it), and
-// all point away from the surface: `outgoing` to where the path came from, `incoming` to where it goes on. A BSDF is
-// asked only for outgoing directions with outgoing.z > 0; whoever asks turns it over first (orient() in scene.h).
+// What every material's BSDF speaks in, and what it answers. Directions are unit, in the local frame of the shading
+// normal (z along it), and all point away from the surface: `outgoing` to where the path came from, `incoming` to where
+// it goes on. A BSDF is asked only for outgoing directions with outgoing.z > 0; whoever asks turns it over first
+// (orient() in scene.h).
 
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
 
 #include "core/math.h"
 
 namespace photonlab {
+
+struct Material;
+struct MaterialReader;
 
 /// What a path carries. Camera paths carry radiance, which refraction compresses with the square of the index; photons
 /// carry flux, which it leaves alone. [Veach 1997, section 5.2]
@@ -39,5 +47,63 @@ struct SpecularBranches {
     const SpecularBranch* begin() const { return branch.data(); }
     const SpecularBranch* end() const { return branch.data() + count; }
 };
+
+/// Refuses, by the material's id and place, what cannot be rendered. Each throws InputError.
+struct MaterialCheck {
+    const Material& material;
+
+    /// What is reflected or let through is no more than what arrived: a colour in [0, 1].
+    void in_unit_range(std::string_view what, const Color& color) const;
+    void require(bool holds, const std::string& expected) const;
+    /// True when the material keeps `data`, which its BSDF looks up.
+    bool keeps(const void* data) const;
+};
+
+// ---------------------------------------------------------------------------------------------------------------------
+// What a kind of BSDF is asked. It has one lobe or both; whether light goes on in single directions is asked of the
+// lobe.
+
+/// A lobe of single directions, as of mirrors and glass: the camera follows each, nothing is gathered.
+template <typename Kind>
+concept Specular = requires(const Kind& bsdf, const Vector& outgoing) {
+    { bsdf.branches(outgoing, Carried::Flux) } -> std::same_as<SpecularBranches>;
+};
+
+/// A lobe that spreads light, at which it is gathered. sample() and density() are those of everything the BSDF does:
+/// where it has single directions as well, sample() draws them too, with a density of 0.
+template <typename Kind>
+concept Scattering = requires(const Kind& bsdf, const Vector& direction, const Imath::V2f& u) {
+    { bsdf.evaluate(direction, direction) } -> std::same_as<Color>;
+    { bsdf.sample(direction, Carried::Flux, u) } -> std::same_as<std::optional<BsdfSample>>;
+    { bsdf.density(direction, direction) } -> std::same_as<float>;
+};
+
+/// A scattering lobe whose f is the same for all directions above the surface. Hit points on it need not know from
+/// where they are seen, which is all that leaving uniform_value() out costs.
+template <typename Kind>
+concept Uniform = requires(const Kind& bsdf) {
+    { bsdf.uniform_value() } -> std::same_as<Color>;
+};
+
+/// Light passes through, and the surface is lit from both sides: turned_over() is what is seen from behind.
+template <typename Kind>
+concept Transmissive = requires(const Kind& bsdf) {
+    { bsdf.turned_over() } -> std::same_as<Kind>;
+};
+
+/// Every kind: its name in scene files, its reader, its checks (that it reflects no more than it gets among them), a
+/// lobe, whether light passes through, and whether none leaves it whatever arrives. read() may be a template of its
+/// reader: then a kind is one header, which does not include the reader.
+template <typename Kind>
+concept BsdfKind = (Specular<Kind> || Scattering<Kind>)&&(Transmissive<Kind> == Kind::is_transmissive) &&
+                   requires(const Kind& bsdf, MaterialReader& reader, const MaterialCheck& check) {
+    { Kind::name } -> std::convertible_to<const char*>;
+    { Kind::read(reader) } -> std::same_as<Kind>;
+    { bsdf.check(check) } -> std::same_as<void>;
+    { bsdf.is_black() } -> std::same_as<bool>;
+};
+
+template <BsdfKind... Kinds>
+using BsdfOf = std::variant<Kinds...>;
 
 }  // namespace photonlab

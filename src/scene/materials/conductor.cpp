@@ -1,5 +1,13 @@
 #include "scene/materials/conductor.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "scene/materials/material_reader.h"
+
 namespace photonlab {
 
 SpecularBranches Conductor::branches(const Vector& outgoing, Carried) const {
@@ -38,6 +46,57 @@ const std::vector<NamedConductor>& named_conductors() {
         {"Cu", {0.200438f, 0.924033f, 1.102212f}, {3.912949f, 2.452848f, 2.142188f}},
     };
     return conductors;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// A metal's index per channel, or `missing`.
+ColorD read_metal_index(Properties& properties, const std::string& name, const Color& missing) {
+    const ColorD index = properties.index_of_refraction(name).value_or(ColorD(missing));
+    if (std::min({index.x, index.y, index.z}) < 0.0)
+        throw InputError(properties.place_of(name), fmt::format("{}: expected values of at least 0, got {} {} {}", name,
+                                                                index.x, index.y, index.z));
+    return index;
+}
+
+/// The metal that a conductor names; where it names none, copper in 0.6 and the perfect mirror in 3.
+const NamedConductor& read_metal(Properties& properties) {
+    const bool is_version_06 = properties.family() == MitsubaFamily::Version06;
+    const std::string wanted = properties.text("material").value_or(is_version_06 ? "Cu" : "none");
+    const auto& known = named_conductors();
+    const auto found =
+        std::find_if(known.begin(), known.end(), [&](const auto& metal) { return metal.name == wanted; });
+    if (found != known.end()) return *found;
+    std::vector<std::string> names;
+    for (const NamedConductor& metal : known) names.push_back(metal.name);
+    throw InputError(
+        properties.place_of("material"),
+        fmt::format("unknown material \"{}\"; known here: {}; or eta and k", wanted, fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+/// In 0.6 eta and k replace those of the metal, and both are relative to the medium around it. Mitsuba 3 has either the
+/// one or the other.
+Conductor Conductor::read(MaterialReader& reader) {
+    Properties& properties = reader.properties;
+    Conductor conductor;
+    conductor.reflectance = reader.factor("specular_reflectance", 1.0);
+    const NamedConductor& metal = read_metal(properties);
+    if (metal.name != "none" && (properties.has("eta") || properties.has("k")) && !reader.is_version_06())
+        throw InputError(reader.element.place, "conductor: expected a material's name or eta and k, got both");
+    const double outside = reader.is_version_06() ? reader.index("ext_eta", "air") : 1.0;
+    conductor.eta = Color(read_metal_index(properties, "eta", metal.eta) / outside);
+    conductor.k = Color(read_metal_index(properties, "k", metal.k) / outside);
+    return conductor;
+}
+
+void Conductor::check(const MaterialCheck& check) const {
+    check.in_unit_range("reflectance", reflectance);
+    for (const Color& index : {eta, k})
+        check.require(is_finite(index) && std::min({index.x, index.y, index.z}) >= 0.0f, "eta and k of at least 0");
 }
 
 }  // namespace photonlab

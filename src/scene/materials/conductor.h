@@ -13,12 +13,17 @@ namespace photonlab {
 /// Reflects only. The index eta + i k is relative to the medium outside; eta = 0 with k = 1 reflects everything.
 struct Conductor {
     static constexpr const char* name = "conductor";
+    static constexpr bool is_transmissive = false;
 
     Color eta = Color(0.0f);          ///< at least 0 a channel
     Color k = Color(1.0f);            ///< at least 0 a channel
     Color reflectance = Color(1.0f);  ///< factor on Fresnel's, in [0, 1] a channel
 
     SpecularBranches branches(const Vector& outgoing, Carried) const;
+    bool is_black() const { return false; }
+
+    static Conductor read(MaterialReader& reader);
+    void check(const MaterialCheck& check) const;
 };
 
 /// Share of unpolarised light that a conductor of relative index eta + i k reflects; cos_theta in [0, 1].

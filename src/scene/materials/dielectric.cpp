@@ -1,5 +1,11 @@
 #include "scene/materials/dielectric.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "scene/materials/material_reader.h"
+
 namespace photonlab {
 
 FresnelDielectric fresnel_dielectric(double cos_here, double eta) {
@@ -33,19 +39,18 @@ SpecularBranches Dielectric::branches(const Vector& outgoing, Carried carried) c
     return result;
 }
 
-// Mitsuba's names and values.
-const std::vector<NamedMedium>& named_media() {
-    static const std::vector<NamedMedium> media{
-        {"vacuum", 1.0},      {"helium", 1.000036},        {"hydrogen", 1.000132},
-        {"air", 1.000277},    {"carbon dioxide", 1.00045}, {"water", 1.3330},
-        {"acetone", 1.36},    {"ethanol", 1.361},          {"carbon tetrachloride", 1.461},
-        {"glycerol", 1.4729}, {"benzene", 1.501},          {"silicone oil", 1.52045},
-        {"bromine", 1.661},   {"water ice", 1.31},         {"fused quartz", 1.458},
-        {"pyrex", 1.470},     {"acrylic glass", 1.49},     {"polypropylene", 1.49},
-        {"bk7", 1.5046},      {"sodium chloride", 1.544},  {"amber", 1.55},
-        {"pet", 1.5750},      {"diamond", 2.419},
-    };
-    return media;
+Dielectric Dielectric::read(MaterialReader& reader) {
+    return {.index_here = reader.index("ext_ior", "air"),
+            .index_beyond = reader.index("int_ior", "bk7"),
+            .reflectance = reader.factor("specular_reflectance", 1.0),
+            .transmittance = reader.factor("specular_transmittance", 1.0)};
+}
+
+void Dielectric::check(const MaterialCheck& check) const {
+    check.in_unit_range("reflectance", reflectance);
+    check.in_unit_range("transmittance", transmittance);
+    for (const float index : {index_here, index_beyond})
+        check.require(std::isfinite(index) && index > 0.0f, fmt::format("an index above 0, got {}", index));
 }
 
 }  // namespace photonlab

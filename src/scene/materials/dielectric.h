@@ -3,9 +3,6 @@
 
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "scene/materials/bsdf.h"
 
 namespace photonlab {
@@ -13,6 +10,7 @@ namespace photonlab {
 /// An interface as seen from one of its sides; turned_over() is the same interface from the other.
 struct Dielectric {
     static constexpr const char* name = "dielectric";
+    static constexpr bool is_transmissive = true;
 
     float index_here = 1.0f;            ///< of the medium on the side of the normal, above 0
     float index_beyond = 1.5f;          ///< of the medium behind, above 0
@@ -21,6 +19,10 @@ struct Dielectric {
 
     SpecularBranches branches(const Vector& outgoing, Carried carried) const;
     Dielectric turned_over() const { return {index_beyond, index_here, reflectance, transmittance}; }
+    bool is_black() const { return false; }
+
+    static Dielectric read(MaterialReader& reader);
+    void check(const MaterialCheck& check) const;
 };
 
 /// Reflected share of unpolarised light and the cosine on the far side, 0 at total reflection.
@@ -31,12 +33,5 @@ struct FresnelDielectric {
 
 /// cos_here in [0, 1]; eta = index_here / index_beyond.
 FresnelDielectric fresnel_dielectric(double cos_here, double eta);
-
-/// A medium by its name in scene files, with its index of refraction at 589 nm.
-struct NamedMedium {
-    std::string name;
-    double index;
-};
-const std::vector<NamedMedium>& named_media();
 
 }  // namespace photonlab

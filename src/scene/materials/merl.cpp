@@ -11,7 +11,7 @@
 
 #include "core/error.h"
 #include "core/sampling.h"
-#include "scene/mitsuba/xml_reader.h"
+#include "scene/materials/material_reader.h"
 
 namespace photonlab {
 
@@ -72,26 +72,19 @@ std::size_t table_index(const VectorD& outgoing, const VectorD& incoming) {
 // ---------------------------------------------------------------------------------------------------------------------
 // The distribution of half vectors
 
-/// Chooses rings of theta_h by what they add to the light that the surface reflects when it is lit evenly from all
-/// sides: the integral over outgoing and incoming directions of f cos cos, where d(outgoing) d(incoming) = 4
-/// cos(theta_d) d(half) d(difference). [Rusinkiewicz 1998; Walter et al. 2007, "Microfacet Models for Refraction",
-/// section 4.2, for the 4 cos(theta_d)]
-///
-/// What is the same on all rings is left to the cosine. This base is the median over rings, weighted by how much light
-/// they would reflect if f were constant: a highlight on a diffuse body covers less than half of it. What stands above
-/// the base is drawn by half vectors, with its share of the energy as its share of the samples; never below 0.1, where
-/// the base hides a highlight that is there all the same, nor above 0.9, so that the cosine's part of the density
-/// bounds every weight by 10 pi f.
-void set_half_distribution(MerlTable& table) {
-    std::array<double, MerlTable::half_bins> even;  // of constant f = 1
-    std::array<double, MerlTable::half_bins> mean;  // of f, in this weighting
+using Rings = std::array<double, MerlTable::half_bins>;
+
+/// What rings of theta_h reflect when the surface is lit evenly from all sides.
+struct RingLight {
+    Rings even;  // of constant f = 1
+    Rings mean;  // of f, in this weighting
+};
+
+RingLight light_of_rings(const MerlTable& table) {
+    RingLight light;
     std::array<double, MerlTable::azimuth_bins> cos_azimuth;
     for (int azimuth = 0; azimuth < MerlTable::azimuth_bins; ++azimuth)
         cos_azimuth[azimuth] = std::cos((azimuth + 0.5) * pi / MerlTable::azimuth_bins);
-    for (int half = 0; half <= MerlTable::half_bins; ++half) {
-        const double sine = std::sin(0.5 * half_edge(half));
-        table.half_edges[half] = 2.0 * sine * sine;
-    }
     for (int half = 0; half < MerlTable::half_bins; ++half) {
         const double theta_h = half_edge(half + 0.5);
         double weight_sum = 0.0;
@@ -109,25 +102,46 @@ void set_half_distribution(MerlTable& table) {
                 value_sum += weight * mean_channel(ColorD(table.values[MerlTable::index(half, difference, azimuth)]));
             }
         }
-        even[half] = weight_sum * (table.half_edges[half + 1] - table.half_edges[half]);
-        mean[half] = weight_sum > 0.0 ? value_sum / weight_sum : 0.0;
+        light.even[half] = weight_sum * (table.half_edges[half + 1] - table.half_edges[half]);
+        light.mean[half] = weight_sum > 0.0 ? value_sum / weight_sum : 0.0;
     }
+    return light;
+}
 
+/// The median of f over rings, weighted by how much they would reflect if f were constant.
+double median_of(const RingLight& light) {
     std::array<int, MerlTable::half_bins> by_mean;
     std::iota(by_mean.begin(), by_mean.end(), 0);
-    std::sort(by_mean.begin(), by_mean.end(), [&](int a, int b) { return mean[a] < mean[b]; });
-    const double all_even = std::accumulate(even.begin(), even.end(), 0.0);
-    double base = 0.0;
+    std::sort(by_mean.begin(), by_mean.end(), [&](int a, int b) { return light.mean[a] < light.mean[b]; });
+    const double all_even = std::accumulate(light.even.begin(), light.even.end(), 0.0);
     double below = 0.0;
     for (const int half : by_mean) {
-        base = mean[half];
-        below += even[half];
-        if (below >= 0.5 * all_even) break;
+        below += light.even[half];
+        if (below >= 0.5 * all_even) return light.mean[half];
     }
+    return light.mean[by_mean.back()];
+}
 
+/// Chooses rings of theta_h by what they add to the light that the surface reflects when it is lit evenly from all
+/// sides: the integral over outgoing and incoming directions of f cos cos, where d(outgoing) d(incoming) = 4
+/// cos(theta_d) d(half) d(difference). [Rusinkiewicz 1998; Walter et al. 2007, "Microfacet Models for Refraction",
+/// section 4.2, for the 4 cos(theta_d)]
+///
+/// What is the same on all rings is left to the cosine. This base is the median over rings, weighted by how much light
+/// they would reflect if f were constant: a highlight on a diffuse body covers less than half of it. What stands above
+/// the base is drawn by half vectors, with its share of the energy as its share of the samples; never below 0.1, where
+/// the base hides a highlight that is there all the same, nor above 0.9, so that the cosine's part of the density
+/// bounds every weight by 10 pi f.
+void set_half_distribution(MerlTable& table) {
+    for (int half = 0; half <= MerlTable::half_bins; ++half) {
+        const double sine = std::sin(0.5 * half_edge(half));
+        table.half_edges[half] = 2.0 * sine * sine;
+    }
+    const auto& [even, mean] = light_of_rings(table);
+    const double base = median_of({even, mean});
     double energy = 0.0;
     double highlight_energy = 0.0;
-    std::array<double, MerlTable::half_bins> highlight;
+    Rings highlight;
     for (int half = 0; half < MerlTable::half_bins; ++half) {
         highlight[half] = std::max(0.0, mean[half] - base) * even[half];
         highlight_energy += highlight[half];
@@ -135,7 +149,7 @@ void set_half_distribution(MerlTable& table) {
     }
     if (!(highlight_energy > 0.0)) {  // constant f
         highlight = even;
-        highlight_energy = all_even;
+        highlight_energy = std::accumulate(even.begin(), even.end(), 0.0);
         table.half_share = 0.1;
     } else {
         table.half_share = std::clamp(highlight_energy / energy, 0.1, 0.9);
@@ -254,7 +268,7 @@ Color Merl::evaluate(const Vector& outgoing, const Vector& incoming) const {
 
 /// u.x chooses the mixture's part, and where it fell inside that part is used again: of its 24 bits, those that the
 /// choice took are missing then, four at most.
-std::optional<BsdfSample> Merl::sample(const Vector& outgoing, const Imath::V2f& u) const {
+std::optional<BsdfSample> Merl::sample(const Vector& outgoing, Carried, const Imath::V2f& u) const {
     if (outgoing.z <= 0.0f) return std::nullopt;
     Vector incoming;
     if (u.x < table->half_share) {
@@ -271,7 +285,7 @@ std::optional<BsdfSample> Merl::sample(const Vector& outgoing, const Imath::V2f&
     // Half vectors seen from behind reflect to below the surface, too.
     if (incoming.z <= 0.0f) return std::nullopt;
     const Color value = evaluate(outgoing, incoming);
-    if (is_black(value)) return std::nullopt;
+    if (photonlab::is_black(value)) return std::nullopt;
     const float drawn_with = density(outgoing, incoming);
     return BsdfSample{incoming, value * (incoming.z / drawn_with), drawn_with};
 }
@@ -284,6 +298,42 @@ float Merl::density(const Vector& outgoing, const Vector& incoming) const {
     const double by_half = of_half / (4.0 * VectorD(outgoing).dot(half));
     const double by_cosine = incoming.z / pi;
     return static_cast<float>(by_cosine + (by_half - by_cosine) * table->half_share);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// Measured data often reflects more than it gets at grazing angles. It is rendered as it is, and that is said.
+void note_energy_above_one(const MerlTable& table, const std::string& file, const SceneSource& source) {
+    constexpr double quadrature_error = 0.005;
+    const MerlTable::Albedo* brightest = nullptr;
+    double most = 1.0 + quadrature_error;
+    for (const MerlTable::Albedo& at : table.albedos) {
+        const double strongest = std::max({at.albedo.x, at.albedo.y, at.albedo.z});
+        if (!(strongest > most)) continue;
+        brightest = &at;
+        most = strongest;
+    }
+    if (brightest)
+        source.note(
+            fmt::format("merl \"{}\": reflects more light than it gets: {:.3f} times as much at {:g} degrees from "
+                        "the normal",
+                        file, most, brightest->degrees));
+}
+
+}  // namespace
+
+Merl Merl::read(MaterialReader& reader) {
+    const std::filesystem::path file = reader.require_file();
+    const auto table = load_merl_table(file, reader.properties.place_of("filename"), reader.source.bytes_read);
+    note_energy_above_one(*table, *reader.properties.text("filename"), reader.source);
+    reader.material.data = table;
+    return {table.get()};
+}
+
+void Merl::check(const MaterialCheck& check) const {
+    check.require(check.keeps(table), "its own table");
 }
 
 }  // namespace photonlab

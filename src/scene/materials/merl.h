@@ -69,12 +69,17 @@ std::shared_ptr<const MerlTable> load_merl_table(const std::filesystem::path& fi
 /// highlight.
 struct Merl {
     static constexpr const char* name = "merl";
+    static constexpr bool is_transmissive = false;
 
-    const MerlTable* table;  ///< not null; the material that this is part of keeps it
+    const MerlTable* table;  ///< not null; the material keeps it
 
     Color evaluate(const Vector& outgoing, const Vector& incoming) const;
-    std::optional<BsdfSample> sample(const Vector& outgoing, const Imath::V2f& u) const;
+    std::optional<BsdfSample> sample(const Vector& outgoing, Carried, const Imath::V2f& u) const;
     float density(const Vector& outgoing, const Vector& incoming) const;
+    bool is_black() const { return false; }
+
+    static Merl read(MaterialReader& reader);
+    void check(const MaterialCheck& check) const;
 };
 
 }  // namespace photonlab

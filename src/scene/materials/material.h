@@ -1,0 +1,139 @@
+// Materials: a BSDF as a variant of plain structs, and what the scene adds to it. Which kinds there are is listed in
+// src/scene/CMakeLists.txt. To add one: a file with a struct that answers what BsdfKind in bsdf.h asks, its name in the
+// list, and a test.
+
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/math.h"
+#include "scene/materials/bsdf_list.h"
+#include "scene/textures/texture.h"
+
+namespace photonlab {
+
+/// A texture that gives one of a BSDF's colours.
+struct TexturedColor {
+    std::shared_ptr<const Texture> texture;
+    std::function<void(Bsdf&, const Color&)> put;  ///< the colour, into its place
+};
+
+/// `texture` gives the colour `member` of a `Kind`.
+template <typename Kind>
+TexturedColor textured(Color Kind::*member, std::shared_ptr<const Texture> texture) {
+    return {std::move(texture), [member](Bsdf& bsdf, const Color& color) { std::get<Kind>(bsdf).*member = color; }};
+}
+
+struct Material {
+    std::string id;  ///< its id in the scene file, or its plugin's name
+    Bsdf bsdf;
+    bool two_sided = false;                    ///< false: black from behind, unless light passes through
+    std::vector<TexturedColor> textures = {};  ///< of `bsdf`
+    std::shared_ptr<const void> data = {};     ///< what `bsdf` looks up, kept for it
+    std::string place = {};                    ///< "file:line" for messages, or ""
+};
+
+/// Throws InputError for what cannot be rendered.
+void require_valid(const Material& material);
+
+/// f(outgoing, incoming) without the cosine, 1/sr; 0 where either direction is below the surface, and for specular
+/// ones.
+inline Color evaluate(const Bsdf& bsdf, const Vector& outgoing, const Vector& incoming) {
+    return std::visit(
+        [&]<typename B>(const B& b) {
+            if constexpr (Scattering<B>)
+                return b.evaluate(outgoing, incoming);
+            else
+                return Color(0.0f);
+        },
+        bsdf);
+}
+
+/// Draws a branch with the probability of its share of the strongest channel.
+std::optional<BsdfSample> choose_branch(const SpecularBranches& branches, float u);
+
+/// A direction by (nearly) the BSDF times the cosine; empty when the path is absorbed. Of a BSDF that only goes on in
+/// single directions, one of these.
+inline std::optional<BsdfSample> sample(const Bsdf& bsdf, const Vector& outgoing, Carried carried,
+                                        const Imath::V2f& u) {
+    return std::visit(
+        [&]<typename B>(const B& b) -> std::optional<BsdfSample> {
+            if constexpr (Scattering<B>)
+                return b.sample(outgoing, carried, u);
+            else
+                return choose_branch(b.branches(outgoing, carried), u.x);
+        },
+        bsdf);
+}
+
+/// Density per steradian with which sample() draws `incoming`; 0 for single directions.
+inline float density(const Bsdf& bsdf, const Vector& outgoing, const Vector& incoming) {
+    return std::visit(
+        [&]<typename B>(const B& b) {
+            if constexpr (Scattering<B>)
+                return b.density(outgoing, incoming);
+            else
+                return 0.0f;
+        },
+        bsdf);
+}
+
+/// The kind of BSDF, as scene files call it.
+const char* material_kind(const Material& material);
+
+/// True when light goes on in single directions, as by mirrors and glass.
+inline bool is_specular(const Bsdf& bsdf) {
+    return std::visit([]<typename B>(const B&) { return Specular<B>; }, bsdf);
+}
+
+/// True when light is spread: it is gathered there, and photons are stored.
+inline bool is_scattering(const Bsdf& bsdf) {
+    return std::visit([]<typename B>(const B&) { return Scattering<B>; }, bsdf);
+}
+
+/// f, where it is the same for all directions above the surface.
+inline std::optional<Color> uniform_value(const Bsdf& bsdf) {
+    return std::visit(
+        []<typename B>(const B& b) -> std::optional<Color> {
+            if constexpr (Uniform<B>)
+                return b.uniform_value();
+            else
+                return std::nullopt;
+        },
+        bsdf);
+}
+
+/// Where specular light goes on; none for other BSDFs.
+SpecularBranches specular_branches(const Bsdf& bsdf, const Vector& outgoing, Carried carried);
+
+/// True when light passes through: the surface is then lit from both sides.
+inline bool is_transmissive(const Bsdf& bsdf) {
+    return std::visit([]<typename B>(const B&) { return B::is_transmissive; }, bsdf);
+}
+
+/// True when no light leaves the surface whatever arrives: nothing is gathered there and no photon stored.
+inline bool is_black(const Bsdf& bsdf) {
+    return std::visit([](const auto& b) { return b.is_black(); }, bsdf);
+}
+
+/// The BSDF at one point, seen from one side: textures looked up, an interface turned over when seen from its back.
+inline Bsdf bsdf_at(const Material& material, const Imath::V2f& texture_coordinate, bool from_back) {
+    Bsdf bsdf = material.bsdf;
+    for (const TexturedColor& color : material.textures) color.put(bsdf, color_at(*color.texture, texture_coordinate));
+    if (!from_back) return bsdf;
+    return std::visit(
+        []<typename B>(const B& b) -> Bsdf {
+            if constexpr (Transmissive<B>)
+                return b.turned_over();
+            else
+                return b;
+        },
+        bsdf);
+}
+
+}  // namespace photonlab

@@ -1,0 +1,62 @@
+// What the reader of a kind is given: a plugin of a scene file, and the file around it. A room's list of kinds is read
+// here, too: which of them has the name that the plugin's type says.
+
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/mitsuba/properties.h"
+
+namespace photonlab {
+
+/// What reading a plugin may need from the scene around it.
+struct SceneSource {
+    /// The element itself, or the one that a <ref> names.
+    std::function<const XmlElement&(const XmlElement&)> resolve;
+    std::string& bytes_read;                       ///< takes the bytes of every file that is read
+    std::size_t& texture_pixels;                   ///< of all textures so far
+    std::function<void(const std::string&)> note;  ///< takes what the user should know, a sentence each
+};
+
+struct Plugin {
+    Plugin(const XmlElement& plugin, const SceneSource& scene) : element(plugin), source(scene), properties(plugin) {}
+
+    const XmlElement& element;
+    const SceneSource& source;
+    Properties properties;
+
+    bool is_version_06() const { return element.family() == MitsubaFamily::Version06; }
+
+    /// The file that its property "filename" names. Throws InputError where there is none.
+    std::filesystem::path require_file();
+
+    /// Refuses what nests in it. Throws InputError.
+    void require_no_objects() const;
+};
+
+/// A kind of a room's list: what scene files call it, and how it is read.
+template <typename Reader, typename Result>
+struct NamedKind {
+    std::string_view name;
+    Result (*read)(Reader&);
+};
+
+/// Throws the InputError for a plugin whose type is none of `known`.
+[[noreturn]] void fail_unknown(const XmlElement& element, std::vector<std::string_view> known);
+
+/// The kind that is called what the element's type says.
+template <typename Reader, typename Result>
+const NamedKind<Reader, Result>& find_kind(const std::vector<NamedKind<Reader, Result>>& kinds,
+                                           const XmlElement& element) {
+    std::vector<std::string_view> known;
+    for (const auto& kind : kinds) {
+        if (kind.name == element.require("type")) return kind;
+        known.push_back(kind.name);
+    }
+    fail_unknown(element, std::move(known));
+}
+
+}  // namespace photonlab
