@@ -29,7 +29,8 @@ class Column:
     type: str = "text"
     label: str = ""          # how labels and axes name it; empty: its values say what it is
     unit: str = ""
-    default: str = ""        # what stands in a table without this column
+    default: str = ""        # what stands in a table without this column,
+    used_by: tuple = ()      # in rows of these integrators; in all where none is named
     follows: tuple = ()      # settings from which it follows: it is no knob where one of them was turned
     values: dict = field(default_factory=dict)    # of a choice, in the order of legends: how each is shown
     error: bool = False      # a metric: the distance from the reference
@@ -137,6 +138,7 @@ ENTRY = {
     "label": (lambda value: isinstance(value, str), "a text"),
     "unit": (lambda value: isinstance(value, str), "a text"),
     "default": (lambda value: isinstance(value, str), "a text"),
+    "used_by": (are_texts, "a list of integrators"),
     "follows": (are_texts, "a list of names"),
     "values": (lambda value: isinstance(value, list) and all(are_texts(pair) and len(pair) == 2 for pair in value),
                "a list of pairs, a value and how it is shown"),
@@ -153,8 +155,5 @@ def column_in(file, place, entry):
         is_sound, expected = ENTRY[key]
         if not is_sound(value):
             raise InputError(f"{file}: column {place}: {key}: expected {expected}")
-    if "follows" in known:
-        known["follows"] = tuple(known["follows"])
-    if "values" in known:
-        known["values"] = dict(known["values"])
-    return Column(**known)
+    as_in_column = {"follows": tuple, "used_by": tuple, "values": dict}
+    return Column(**{key: as_in_column[key](value) if key in as_in_column else value for key, value in known.items()})

@@ -8,6 +8,7 @@ import time
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import numpy
 import pandas
 
 from analysis.records import columns, files, kept_files, methods, runs, tables
@@ -89,8 +90,11 @@ def with_all_columns(file, rows, described):
     had, so that each which the analysis knows by name is there."""
     required = [name for name in described.of_kind("identity") if not described[name].default]
     tables.require_columns(file, rows, required, f"expected those of schema {SCHEMA}")
-    lacking = {column.name: column.default for column in [*columns.before_descriptions(), *described] if column.name not in rows}
-    return rows.assign(**lacking)
+    for column in [*described, *columns.before_descriptions()]:
+        if column.name not in rows:
+            applies = rows["integrator"].isin(column.used_by) if column.used_by and "integrator" in rows else True
+            rows = rows.assign(**{column.name: numpy.where(applies, column.default, "")})
+    return rows
 
 
 def with_numbers(file, rows, described):

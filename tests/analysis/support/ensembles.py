@@ -5,27 +5,23 @@ import json
 from pathlib import Path
 
 import numpy
-import OpenImageIO
 
 from support import synthetic
+from support.images import write_exr
 
 HEIGHT, WIDTH = 24, 32
 REGIONS = {"smooth": [0, 0, 16, 12], "edge": [16, 12, 32, 24]}
 PASSES = [0, 1, 2, 4, 8, 16, 32, 64, 128]
 
 
-def write_layers(file, layers, seeds=None):
-    names = [f"{name}.{channel}" for name in layers for channel in "RGB"]
-    total = sum(layers.values())
-    spec = OpenImageIO.ImageSpec(WIDTH, HEIGHT, len(names) + 3, "float")
-    spec.channelnames = tuple(names + ["R", "G", "B"])
-    if seeds:
-        spec.attribute("photonlab.seeds", " ".join(map(str, seeds)))
-    file.parent.mkdir(parents=True, exist_ok=True)
-    output = OpenImageIO.ImageOutput.create(str(file))
-    assert output.open(str(file), spec), output.geterror()
-    output.write_image(numpy.concatenate([*layers.values(), total], axis=2).astype("float32"))
-    output.close()
+def write_layers(file, layers, seeds=()):
+    """An image with these layers and their sum; a sum over seeds where there are some."""
+    write_exr(file, channels_of(layers), attributes=[("photonlab.seeds", " ".join(map(str, seeds)))] if seeds else [])
+
+
+def channels_of(layers):
+    named = {**{f"{name}.": layer for name, layer in layers.items()}, "": sum(layers.values())}
+    return {f"{prefix}{channel}": layer[:, :, place] for prefix, layer in named.items() for place, channel in enumerate("RGB")}
 
 
 def truth():

@@ -22,6 +22,13 @@ def write_with_checksum(file, value):
     file.write_text(f'{text},\n  "checksum": "{hash_of(text.encode())}"\n}}\n')
 
 
+def change(file, **changed):
+    """Writes a description again with other values, as if the program had."""
+    description = {**json.loads(file.read_text()), **changed}
+    description.pop("checksum")
+    write_with_checksum(file, description)
+
+
 def stamp(results):
     """All of a folder, as it is."""
     results = Path(results)

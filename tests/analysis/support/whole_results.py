@@ -6,7 +6,7 @@ import numpy
 from analysis.figures import probes, scaling
 from support import ensembles as made
 from support import synthetic
-from support.images import write_exr
+from support.images import grey, write_runs
 
 SEEDS = [1, 2, 3, 4]
 PASSES = [0, 1, 4, 8, 16, 32]
@@ -33,12 +33,9 @@ def make(results):
                        radius_mean=str((int(row["pass"]) + 1) ** -0.15), map_bytes="1e6", hit_point_bytes="1e5",
                        peak_rss_mib="50", cpu_seconds=row["seconds"])
         rows += of_point
-        for seed in SEEDS:
-            folder = synthetic.write_run(results, f"{point}_seed-{seed}", [1, 32], "reference", str(results))
-            for number in [1, 32]:
-                made.write_layers(folder / f"snapshots/pass-{number:06}.exr", {
-                    "emission": numpy.zeros_like(made.truth()), "direct": made.truth(),
-                    "gathered": made.truth() + 0.1 / number * random.standard_normal(made.truth().shape)})
+        write_runs(results, [f"{point}_seed-{seed}" for seed in SEEDS], [1, 32], lambda _, number: made.channels_of({
+            "emission": numpy.zeros_like(made.truth()), "direct": made.truth(),
+            "gathered": made.truth() + 0.1 / number * random.standard_normal(made.truth().shape)}), "reference")
     synthetic.write_csv(results, rows)
     synthetic.write_rows(results / "probes.csv", probes.COLUMNS, [
         {"schema": 1, "experiment": "made-up", "run": "cornell-box_b_seed-1", "scene": "cornell-box", "seed": 1, "probe": "corner",
@@ -57,7 +54,6 @@ def make_extremes(results, rays):
             settings = synthetic.PM_RADIUS if integrator == "photonmapper" else {"integrator": integrator}
             own = synthetic.rows(lambda *_: 1e-3, seeds=[1], passes=[8], scene=scene, **settings)
             rows += [{**row, "run": f"{scene}_{integrator}_seed-1"} for row in own]
-            write_exr(synthetic.write_run(folder, rows[-1]["run"], [8], None) / "snapshots/pass-000008.exr",
-                      {channel: numpy.ones((4, 6)) for channel in "RGB"})
+        write_runs(folder, {row["run"] for row in rows}, [8], lambda *_: grey(1.0))
         synthetic.write_csv(folder, rows)
     (results / "update.csv").write_text(UPDATE)

@@ -26,6 +26,13 @@ READS = {"convergence": [], "strip": IMAGES, "gallery": IMAGES, "decomposition":
          "memory": [], "best_alpha": ["best-alphas.csv"], "grid": IMAGES, "equal_time": [*IMAGES[:2], "decomposition.csv"],
          "time_to_error": [], "tradeoff": [], "probes": ["probes.csv"], "scaling": [], "report": [*IMAGES, "fits.csv",
                                                                                                  "decomposition.csv"]}
+FIGURES = {"convergence": ["convergence-cornell-box"], "strip": ["strip-cornell-box"], "gallery": ["gallery"],
+           "bias_variance": ["bias-variance-cornell-box"], "memory": ["memory-cornell-box"], "best_alpha": ["best-alpha-cornell-box"],
+           "grid": ["grid-cornell-box", "differences-cornell-box"], "equal_time": ["equal-time-cornell-box"],
+           "time_to_error": ["time-to-error"], "tradeoff": ["tradeoff-cornell-box"], "probes": ["probes-cornell-box"],
+           "scaling": ["scaling"]}
+TABLES = {"decomposition": ["decomposition.csv"], "fits": ["fits.csv", "best-alphas.csv"], "equal_time": ["equal-time.csv"],
+          "time_to_error": ["time-to-error.csv"], "tradeoff": ["tradeoff.csv", "tradeoff.md"], "report": ["report.html"]}
 WAITED_TOO_LONG = 60    # seconds
 
 
@@ -44,8 +51,9 @@ class Commands(unittest.TestCase):
         whole_results.make_extremes(Path(cls.folder.name) / "extremes", Path(cls.folder.name) / "extremes-rays")
         cls.opened = []    # for writing
         sys.addaudithook(cls.note)
+        cls.said = {}    # what each command names
         for name in whole_results.COMMANDS:
-            code, _, errors = run(name, cls.results)
+            code, cls.said[name], errors = run(name, cls.results)
             assert (code, errors) == (0, ""), (name, errors)
         cls.written, cls.opened = cls.opened, None
 
@@ -54,6 +62,41 @@ class Commands(unittest.TestCase):
         if event == "open" and cls.opened is not None and isinstance(arguments[0], (str, bytes, os.PathLike)):
             if (arguments[2] or 0) & (os.O_WRONLY | os.O_RDWR):
                 cls.opened.append(os.fsdecode(arguments[0]))
+
+    def test_each_names_what_it_has_written(self):
+        for name, said in self.said.items():
+            figures = [f"figures/{figure}.{kind}" for figure in FIGURES.get(name, []) for kind in ["png", "pdf"]]
+            for file in figures + TABLES.get(name, []):
+                self.assertIn(str(self.results / file), said)
+                self.assertTrue((self.results / file).is_file(), file)
+
+    def test_without_a_command_all_is_drawn_to_the_same_bytes(self):
+        with tempfile.TemporaryDirectory() as folder:
+            results = Path(folder)
+            whole_results.make(results)
+            code, output, errors = run(results)
+            self.assertEqual((code, errors), (0, ""))
+            self.assertIn(str(results / "report.html"), output)
+            drawn, expected = contents(results), contents(self.results)
+            self.assertEqual(set(drawn), set(expected))
+            for name, data in expected.items():
+                if name.endswith((".png", ".csv")):
+                    self.assertEqual(drawn[name], data, name)
+
+    def test_help_lists_the_commands_and_says_what_each_writes(self):
+        code, listed, _ = run("--help")
+        self.assertEqual(code, 0)
+        for name in [*whole_results.COMMANDS, "extremes"]:
+            self.assertRegex(listed, rf"\n  {name} +[A-Z]")
+            code, output, _ = run(name, "--help")
+            self.assertEqual(code, 0)
+            for file in FIGURES.get(name, []):
+                self.assertIn(f"{file.replace('cornell-box', 'SCENE')}", " ".join(output.split()), name)
+
+    def test_no_folder_and_one_without_records_are_refused(self):
+        self.assertEqual(run()[0], 2)
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(run(folder)[::2], (2, f"{folder}/iterations.csv: is not there; expected the records of `photonlab run`\n"))
 
     def calls(self):
         """(name, folders) of every command."""
@@ -119,11 +162,11 @@ class Commands(unittest.TestCase):
 
     def test_a_run_whose_name_no_file_can_have_is_refused(self):
         file = self.results / "iterations.csv"
-        for run in ["x" * 256 + "_seed-1", "a\0b_seed-1"]:
-            changed = file.read_text().replace("cornell-box_default_seed-1", run)
+        for long_run in ["x" * 256 + "_seed-1", "a\0b_seed-1"]:
+            changed = file.read_text().replace("cornell-box_default_seed-1", long_run)
             for name in ["strip", "gallery", "grid", "report"]:
                 with self.replaced(file, lambda file: file.write_text(changed)):
-                    self.assertIn(run[:9], self.refusal(name, [self.results]))
+                    self.assertIn(long_run[:9], self.refusal(name, [self.results]))
 
     def test_a_folder_whose_name_is_no_text_is_drawn(self):
         odd = self.results.parent / os.fsdecode(b"caf\xe9 $x^$")

@@ -22,10 +22,6 @@ def write_best(results, radii=("4", "16"), regions=("image", "edge"), passes=(1,
 
 
 class BestAlpha(InFolder):
-    def test_a_figure_a_scene_is_drawn(self):
-        write_best(self.results)
-        self.assert_drawn(self.output_of("best_alpha"), "best-alpha-cornell-box")
-
     def test_sweeps_are_told_apart_by_what_differs_and_are_in_its_order(self):
         families = self.families(["16", "4"])
         self.assertEqual(list(families), ["initial radius = 4", "initial radius = 16"])

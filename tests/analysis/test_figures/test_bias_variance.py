@@ -26,9 +26,6 @@ class BiasVariance(InFolder):
         made.write_records(self.results, settings, seeds)
         self.output_of("decomposition")
 
-    def test_a_figure_a_scene_is_drawn(self):
-        self.assert_drawn(self.output_of("bias_variance"), "bias-variance-cornell-box")
-
     def test_a_curve_lies_where_its_photons_and_seconds_are(self):
         rows = decomposition.read_decomposition(self.read())
         own = rows[(rows["point"] == "box_alpha-0.9") & (rows["component"] == "gathered") & (rows["region"] == "image") &

@@ -10,7 +10,7 @@ from analysis.drawing import style
 from analysis.figures import convergence
 from analysis.statistics import errors
 from support import ANALYSIS, synthetic
-from support.in_folder import InFolder, run
+from support.in_folder import InFolder
 
 
 PASSES = [0, 1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024]
@@ -104,15 +104,6 @@ class Convergence(InFolder):
             self.output_of("convergence")
             written.append([file.read_bytes() for file in sorted((self.results / "figures").iterdir())])
         self.assertEqual(written[0], written[1])
-
-    def test_bad_input_ends_with_2_and_a_message(self):
-        self.assertIn("iterations.csv: is not there", self.refusal_of("convergence"))
-        self.assertEqual(run("convergence")[0], 2)
-
-    def test_help_names_what_is_written(self):
-        code, output, _ = run("convergence", "--help")
-        self.assertEqual(code, 0)
-        self.assertIn("figures/convergence-SCENE.png", output)
 
 
 class Axes(unittest.TestCase):

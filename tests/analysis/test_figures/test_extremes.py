@@ -7,7 +7,7 @@ import numpy
 from analysis.figures import extremes
 from analysis.records import files
 from support import synthetic
-from support.images import write_exr
+from support.images import grey, write_runs
 from support.in_folder import InFolder
 
 UPDATE = """axis,value,update,radius,count,estimate
@@ -17,10 +17,6 @@ passes,1,float,0,0,0
 passes,1000000,float,1e-4,5e-3,2e-3
 alpha,0.7,float,1e-4,5e-4,2e-4
 """
-
-
-def constant(radiance):
-    return {channel: numpy.full((4, 6), radiance) for channel in "RGB"}
 
 
 class Extremes(InFolder):
@@ -37,8 +33,7 @@ class Extremes(InFolder):
                 rows = synthetic.rows(lambda *_: 1e-3, seeds=[seed], passes=[8], **settings)
                 run = f"{scene}_{integrator}_{cutoff}_seed-{seed}"
                 made += [{**row, "scene": scene, "branch_cutoff": cutoff, "run": run} for row in rows]
-                write_exr(synthetic.write_run(results, run, [8], None) / "snapshots/pass-000008.exr",
-                          constant(radiance))
+                write_runs(results, [run], [8], lambda *_: grey(radiance))
         synthetic.write_csv(results, made)
 
     def make_all(self):

@@ -4,7 +4,7 @@ import unittest
 
 from analysis.figures import gallery
 from support import synthetic
-from support.images import layered, write_exr
+from support.images import layered, write_exr, write_runs
 from support.in_folder import InFolder
 
 
@@ -13,10 +13,7 @@ class Gallery(InFolder):
         made = synthetic.rows(lambda seed, number, component: 4e-4, seeds=[1], **synthetic.PM_RADIUS)
         made += synthetic.rows(lambda seed, number, component: 1e-4, seeds=[1, 2])
         synthetic.write_csv(self.results, made)
-        for run in sorted({row["run"] for row in made}):
-            folder = synthetic.write_run(self.results, run, passes, reference, working_directory=str(self.results))
-            for number in passes:
-                write_exr(folder / f"snapshots/pass-{number:06}.exr", layered(1.0, 0.5))
+        write_runs(self.results, {row["run"] for row in made}, passes, lambda *_: layered(1.0, 0.5), reference)
         if reference:
             for half in ["half_a", "half_b"]:
                 write_exr(self.results / reference / f"{half}.exr", layered(1.0, 0.5))

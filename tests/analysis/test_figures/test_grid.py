@@ -6,7 +6,7 @@ import numpy
 
 from analysis.figures import grid
 from support import synthetic
-from support.images import layered, write_exr
+from support.images import layered, write_exr, write_runs
 from support.in_folder import InFolder
 
 
@@ -30,9 +30,7 @@ class Grid(InFolder):
         numpy.testing.assert_allclose(errors ** 2, [[1.7e-4, 2.1e-4], [5e-5, 9e-5], [8.9e-4, 9.3e-4]])
 
     def test_heat_map_and_differences_are_drawn(self):
-        for run in self.make():
-            folder = synthetic.write_run(self.results, run, [64], "half.exr", working_directory=str(self.results))
-            write_exr(folder / "snapshots/pass-000064.exr", layered(1.0, 0.5))
+        write_runs(self.results, self.make(), [64], lambda *_: layered(1.0, 0.5), "half.exr")
         write_exr(self.results / "half.exr", layered(1.0, 0.4))
         self.assert_drawn(self.output_of("grid"), "grid-cornell-box", "differences-cornell-box")
 

@@ -32,10 +32,6 @@ class Memory(InFolder):
         self.assertEqual(memory.shared_name(["PPM, α = 0.5", "PPM, α = 0.9"]), "PPM (2 settings)")
         self.assertEqual(memory.shared_name(["PPM, α = 0.7"]), "PPM, α = 0.7")
 
-    def test_a_figure_a_scene_is_drawn(self):
-        self.write([({}, lambda *_: 5)])
-        self.assert_drawn(self.output_of("memory"), "memory-cornell-box")
-
     def test_without_photons_there_is_nothing_to_draw(self):
         synthetic.write_csv(self.results, synthetic.rows(lambda *_: 0.01, integrator="path"))
         output = self.output_of("memory")

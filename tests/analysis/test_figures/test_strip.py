@@ -8,7 +8,7 @@ from analysis.drawing import pictures
 from analysis.figures import strip
 from analysis.records import files, images, records
 from support import synthetic
-from support.images import layered, write_exr
+from support.images import grey, layered, write_exr, write_runs
 from support.in_folder import InFolder
 
 
@@ -18,10 +18,8 @@ class Strip(InFolder):
         for settings in [synthetic.PM_RADIUS, {"alpha": "0.5"}, {"alpha": "0.9"}]:
             made += synthetic.rows(lambda seed, number, component: 0.01, seeds=[1, 2], direct=direct, **settings)
         synthetic.write_csv(self.results, made)
-        for place, run in enumerate(sorted({row["run"] for row in made})):
-            folder = synthetic.write_run(self.results, run, passes, reference, working_directory=str(self.results))
-            for number in passes:
-                write_exr(folder / f"snapshots/pass-{number:06}.exr", layered(0.5 + 0.01 * place, 0.25))
+        runs = sorted({row["run"] for row in made})
+        write_runs(self.results, runs, passes, lambda run, _: layered(0.5 + 0.01 * runs.index(run), 0.25), reference)
         for name, value in [("half_a", 0.49), ("half_b", 0.51)]:
             write_exr(self.results / "reference/box" / f"{name}.exr", layered(value, 0.25))
         return self.results
@@ -99,7 +97,7 @@ class Strip(InFolder):
         self.make_results()
         for half in ["half_a", "half_b"]:
             write_exr(self.results / f"reference/box/{half}.exr",
-                      {channel: numpy.ones((8, 8)) for channel in "RGB"})
+                      grey(1.0, (8, 8)))
         self.assertIn(f"differs in size from {self.results}/reference/box/half_a.exr", self.refusal_of("strip"))
 
 

@@ -130,6 +130,12 @@ class Old(Described):
         after = self.write([{**row, "wobble": "0", "slack": "0"} for row in rows]).rows
         self.assertEqual(before[after.columns].to_csv(), after.to_csv())
 
+    def test_a_default_stands_only_in_rows_of_what_uses_the_setting(self):
+        rows = synthetic.rows(lambda *_: 1e-3) + rows_of_beams("", slack="")
+        listed = [{**column, "used_by": ["beams"]} if column is WOBBLE else column for column in described()]
+        found = self.write(rows, synthetic.COLUMNS, listed)
+        self.assertEqual(found.rows.groupby("integrator")["wobble"].unique().map(list).to_dict(), {"beams": ["0"], "ppm": [""]})
+
     def test_a_folder_that_describes_less_than_there_was_is_drawn(self):
         few = [column for column in described() if column["kind"] == "identity" or column["name"] in [
             "integrator", "wobble", "seconds", "mse", "mse_unbiased", "median_error"]]

@@ -73,9 +73,7 @@ class KeptFiles(InFolder):
         shutil.rmtree(self.results / f"ensembles/{POINT}")
         shutil.copytree(self.sound / f"ensembles/{POINT}", self.results / f"ensembles/{POINT}")
         file = self.results / f"runs/{RUN}/run.json"
-        description = {**json.loads(file.read_text()), "ensemble": {"folder": "x", "key": "another"}}
-        description.pop("checksum")
-        stamps.write_with_checksum(file, description)
+        stamps.change(file, ensemble={"folder": "x", "key": "another"})
         self.assertIn(f"holds sums of other settings than run {RUN}", self.refusal_of("decomposition"))
 
     def test_rows_that_are_changed_or_gone_are_refused_with_what_brings_them_back(self):
@@ -111,10 +109,8 @@ class KeptFiles(InFolder):
     def test_a_run_that_was_made_anew_since_is_not_mixed_with_older_rows(self):
         folder = self.results / f"runs/{RUN}"
         (folder / "iterations.csv").write_text((folder / "iterations.csv").read_text().replace("0.26", "0.27"))
-        description = json.loads((folder / "run.json").read_text())
-        description["files"]["iterations.csv"] = stamps.stamp_of(folder / "iterations.csv")
-        description.pop("checksum")
-        stamps.write_with_checksum(folder / "run.json", description)
+        listed = json.loads((folder / "run.json").read_text())["files"]
+        stamps.change(folder / "run.json", files={**listed, "iterations.csv": stamps.stamp_of(folder / "iterations.csv")})
         for name in ["strip", "report", "decomposition"]:
             self.assertIn(f"the rows of {RUN} are of another making of this run than what is in {folder}", self.refusal_of(name))
 
@@ -147,14 +143,9 @@ class KeptFiles(InFolder):
             "key": "key", "samples_per_half": 64,
             "checksums": {half: stamps.stamp_of(reference / f"{half}.exr")["hash"] for half in ["half_a", "half_b"]}}))
         for file in self.results.glob("runs/*/run.json"):
-            description = json.loads(file.read_text())
-            description.pop("checksum")
-            stamps.write_with_checksum(file, {**description, "working_directory": str(self.results),
-                                              "reference": {"path": "reference", "key": key}})
+            stamps.change(file, working_directory=str(self.results), reference={"path": "reference", "key": key})
         for file in self.results.glob("ensembles/*/ensemble.json"):
-            description = json.loads(file.read_text())
-            description.pop("checksum")
-            stamps.write_with_checksum(file, {**description, "working_directory": str(self.results)})
+            stamps.change(file, working_directory=str(self.results))
 
     def test_a_reference_that_has_grown_since_is_not_the_one_of_the_errors(self):
         self.name_reference("key-32")

@@ -8,7 +8,7 @@ from analysis.figures import equal_time as figure
 from analysis.statistics import equal_time
 from support import ensembles as made
 from support import synthetic
-from support.images import layered, write_exr
+from support.images import grey, layered, write_exr, write_runs
 from support.in_folder import InFolder
 
 
@@ -22,10 +22,7 @@ class EqualTime(InFolder):
         for row in path:
             row["seconds"] = str(float(row["pass"]))
         synthetic.write_csv(self.results, ppm + path)
-        for run in sorted({row["run"] for row in ppm + path}):
-            folder = synthetic.write_run(self.results, run, [16, 64], reference, working_directory=str(self.results))
-            for number in [16, 64]:
-                write_exr(folder / f"snapshots/pass-{number:06}.exr", layered(1.0, 0.5))
+        write_runs(self.results, {row["run"] for row in ppm + path}, [16, 64], lambda *_: layered(1.0, 0.5), reference)
 
     def test_errors_are_interpolated_on_logarithmic_axes(self):
         self.write()
@@ -61,10 +58,8 @@ class EqualTime(InFolder):
         made.write_ensemble(self.results, "box", seeds, lambda n: bias, lambda n: 0.0, numpy.random.default_rng(2))
         made.write_records(self.results, {"box": {"width": str(made.WIDTH), "height": str(made.HEIGHT)}}, seeds)
         self.output_of("decomposition")
-        for seed in seeds:
-            folder = synthetic.write_run(self.results, f"box_seed-{seed}", [16], "reference", working_directory=str(self.results))
-            shape = numpy.ones((made.HEIGHT, made.WIDTH))
-            write_exr(folder / "snapshots/pass-000016.exr", {channel: shape for channel in "RGB"})
+        write_runs(self.results, [f"box_seed-{seed}" for seed in seeds], [16], lambda *_: grey(1.0, (made.HEIGHT, made.WIDTH)),
+                   "reference")
         output = self.output_of("equal_time")
         self.assertIn("equal-time-cornell-box.png", output)
         for row in self.table("equal-time.csv"):
