@@ -7,6 +7,11 @@ from pathlib import Path
 from analysis.records import files, records
 
 
+def has(name):
+    """True of records in whose folder there is a file or folder of this name."""
+    return lambda results: files.is_there(results.folder / name)
+
+
 def positive(text):
     """A number above 0 from the command line."""
     value = float(text)
@@ -28,6 +33,7 @@ class Command:
     """`make` takes what `read` makes of the folder and the options, writes files, and yields what it has to say: their names, and
     what is left out."""
     name: str
+    summary: str         # for lists of commands
     about: str           # the docstring of its file: a sentence or two, then what a reader of its figure needs
     writes: str          # what it writes in the folder
     make: Callable

@@ -63,7 +63,7 @@ def make_all(folder):
 
 
 def folder_in(arguments):
-    listed = "\n".join(f"  {command.name:16}{command.about.split('. ')[0].split(': ')[0].split('.')[0]}" for command in COMMANDS)
+    listed = "\n".join(f"  {command.name:16}{command.summary}" for command in COMMANDS)
     parser = argparse.ArgumentParser(
         prog="analysis", usage="analysis RESULTS\n       analysis COMMAND RESULTS [options]",
         description="Draws all that a folder of results has, or with a COMMAND one figure or table.",

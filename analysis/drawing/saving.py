@@ -22,15 +22,14 @@ def save(figure, results, name):
     return [files.replace_file(results.folder / "figures" / f"{name}.{kind}", data.getvalue()) for kind, data in drawn.items()]
 
 
-def save_scenes(results, name, draw, nothing, ending=""):
-    """Saves what `draw` makes of the records of each scene as figures/NAME-SCENE, with the ending; yields the files' names, and where
-    it makes nothing of a scene, that there is `nothing`."""
-    for scene in results.scenes():
-        figure = draw(scene)
+def save_scenes(results, name, figures, nothing="", ending=""):
+    """Saves figures, pairs of a scene's name and its figure, as figures/NAME-SCENE, with the ending; yields the files' names, and
+    where there is no figure of a scene, that there is `nothing`."""
+    for scene, figure in figures:
         if figure is None:
-            yield f"{scene.scene}: {nothing}"
+            yield f"{scene}: {nothing}"
         else:
-            yield from save(figure, results, f"{name}-{files.as_file_name(scene.scene)}{ending}")
+            yield from save(figure, results, f"{name}-{files.as_file_name(scene)}{ending}")
 
 
 def records_of_png(data):

@@ -13,11 +13,10 @@ import math
 import numpy
 from matplotlib import lines, patches
 
-from analysis.command import Command
+from analysis.command import Command, has
 from analysis.drawing import style
 from analysis.drawing.panels import panels_over_legend
-from analysis.drawing.saving import save
-from analysis.records import files
+from analysis.drawing.saving import save_scenes
 from analysis.records.columns import as_number
 from analysis.statistics import best_alphas
 
@@ -32,7 +31,8 @@ def families_of(rows, columns):
     differing = [name for name in differing if not (columns[name].type == "text" and set(columns[name].follows) & set(differing))]
     if not differing:
         return {"": rows}
-    names = rows[differing].apply(lambda row: ", ".join(columns.setting_text(name, row[name]) for name in differing if row[name]), axis=1)
+    names = rows[differing].apply(lambda row: ", ".join(columns.setting_text(name, row[name]) for name in differing if row[name]),
+                                  axis=1)
     labelled = {name: own for name, own in rows.groupby(names, sort=False)}
     return dict(sorted(labelled.items(), key=lambda item: [as_number(item[1][name].iloc[0]) or 0.0 for name in differing]))
 
@@ -80,16 +80,12 @@ def draw(rows, columns):
 
 
 def make(results, _):
-    for scene, rows in best_alphas.read_best(results).groupby("scene", sort=False):
-        figure = draw(rows, results.columns)
-        if figure is None:
-            yield f"{scene}: no alpha has a probability, which takes three seeds, so there is nothing to draw"
-        else:
-            yield from save(figure, results, f"best-alpha-{files.as_file_name(scene)}")
+    by_scene = best_alphas.read_best(results).groupby("scene", sort=False)
+    return save_scenes(results, "best-alpha", ((scene, draw(rows, results.columns)) for scene, rows in by_scene),
+                       "no alpha has a probability, which takes three seeds, so there is nothing to draw")
 
 
-def has_table(results):
-    return files.is_there(results.folder / best_alphas.NAME)
-
-
-COMMAND = Command("best_alpha", __doc__, "figures/best-alpha-SCENE.png and .pdf", make, is_for=has_table)
+COMMAND = Command(
+    name="best_alpha", summary="the figure of best-alphas.csv", about=__doc__,
+    writes="figures/best-alpha-SCENE.png and .pdf",
+    make=make, is_for=has(best_alphas.NAME))

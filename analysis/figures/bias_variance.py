@@ -3,8 +3,9 @@ row for the whole image and for each named region, a line per method. `analysis 
 decomposition.csv, which is read here.
 
 Bands are 1.96 standard errors to both sides: 95% where errors are Gaussian. Thin lines are what theory predicts for these passes
-(theory.py), through the measured value at the window's first pass: dotted where light is smooth, dashed at edges. What is not above two standard errors
-is not resolved: a logarithmic axis could only show the half of it that came out high, so it is marked at the bottom.
+(theory.py), through the measured value at the window's first pass: dotted where light is smooth, dashed at edges. What is not above
+two standard errors is not resolved: a logarithmic axis could only show the half of it that came out high, so it is marked at the
+bottom.
 
 Where the reference has it, gathered light is drawn, which is what theory is about; otherwise the whole picture. Seconds are
 those of all light, and means over seeds.
@@ -16,11 +17,11 @@ import numpy
 from matplotlib import lines
 from matplotlib.transforms import blended_transform_factory
 
-from analysis.command import Command
+from analysis.command import Command, has
 from analysis.drawing import style
 from analysis.drawing.panels import panels_over_legend
-from analysis.drawing.saving import save
-from analysis.records import files, methods
+from analysis.drawing.saving import save_scenes
+from analysis.records import methods
 from analysis.records.files import InputError
 from analysis.statistics import decomposition, slopes, theory
 
@@ -216,16 +217,8 @@ def make(results, options):
                          "`analysis decomposition` again")
     of_scene = {scene.scene: scene for scene in results.scenes()}
     extra = ("-roots" if options.roots else "") + (f"-{options.against}" if options.against != "passes" else "")
-    for name, own in rows.groupby("scene", sort=False):
-        figure = draw(of_scene[name], own, options.against, options.roots)
-        if figure is None:
-            yield f"{name}: nothing is resolved, so there is nothing to draw"
-        else:
-            yield from save(figure, results, f"bias-variance-{files.as_file_name(name)}{extra}")
-
-
-def has_table(results):
-    return files.is_there(results.folder / decomposition.NAME)
+    figures = ((name, draw(of_scene[name], own, options.against, options.roots)) for name, own in rows.groupby("scene", sort=False))
+    return save_scenes(results, "bias-variance", figures, "nothing is resolved, so there is nothing to draw", extra)
 
 
 def add_options(parser):
@@ -234,5 +227,7 @@ def add_options(parser):
     parser.add_argument("--roots", action="store_true", help="draw RMSE and the roots of variance and squared bias, in radiance")
 
 
-COMMAND = Command("bias_variance", __doc__, "figures/bias-variance-SCENE.png and .pdf; what is not drawn by default is in the name: "
-                  "bias-variance-SCENE-roots-seconds", make, is_for=has_table, add_options=add_options)
+COMMAND = Command(
+    name="bias_variance", summary="the figure of decomposition.csv", about=__doc__,
+    writes="figures/bias-variance-SCENE.png and .pdf; what is not drawn by default is in the name: bias-variance-SCENE-roots-seconds",
+    make=make, is_for=has(decomposition.NAME), add_options=add_options)

@@ -149,7 +149,7 @@ def draw(scene, metric=None):
 def make(results, options):
     metric = errors.metric_named(results.columns, options.metric) if options.metric else None
     nothing = "no errors were recorded (was there a reference?), so no convergence plot"
-    return save_scenes(results, "convergence", lambda scene: draw(scene, metric), nothing,
+    return save_scenes(results, "convergence", ((scene.scene, draw(scene, metric)) for scene in results.scenes()), nothing,
                        f"-{options.metric}" if options.metric else "")
 
 
@@ -157,5 +157,8 @@ def add_options(parser):
     parser.add_argument("--metric", metavar="COLUMN", help="a metric of iterations.csv, relmse for instance (default: RMSE)")
 
 
-COMMAND = Command("convergence", __doc__, "figures/convergence-SCENE.png and .pdf (convergence-SCENE-METRIC for another metric)", make,
-                  add_options=add_options)
+COMMAND = Command(
+    name="convergence", about=__doc__,
+    summary="RMSE against passes and against seconds, for every scene; --metric draws another error",
+    writes="figures/convergence-SCENE.png and .pdf (convergence-SCENE-METRIC for another metric)",
+    make=make, add_options=add_options)

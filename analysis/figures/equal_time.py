@@ -84,15 +84,13 @@ def cells_of(scene, found, seconds):
     `found` are the errors at the budget."""
     if not all(map(scene.has_run, scene.rows["run"].unique())):
         return None
-    judge = references.reference_of(scene, scene.run(scene.rows["run"].iloc[0]).description)
-    halves = judge.halves if judge else []
-    reference = images.read_reference(halves, "total", False)
+    judge, reference = references.read_reference_of(scene, scene.run(scene.rows["run"].iloc[0]))
     shown = {label: nearest_snapshot(scene, scene.of_method(label), seconds) for label in scene.labels}
     shown = {label: snapshot for label, snapshot in shown.items() if snapshot}
     if reference is None or not shown:
         return None
     for image, _, file in shown.values():
-        images.require_same_size(file, image, halves[0], reference)
+        images.require_same_size(file, image, judge.halves[0], reference)
     _, _, first_file = next(iter(shown.values()))
     emission = images.read_component(first_file, "emission")
     is_light = numpy.zeros(reference.shape[:2], bool) if emission is None else emission.max(axis=2) > 0
@@ -155,4 +153,7 @@ def make(results, _):
     yield tables.write_derived(results, NAME, COLUMNS, table)
 
 
-COMMAND = Command("equal_time", __doc__, "equal-time.csv and figures/equal-time-SCENE, .png and .pdf", make)
+COMMAND = Command(
+    name="equal_time", summary="errors at the same seconds, with pictures and insets", about=__doc__,
+    writes="equal-time.csv and figures/equal-time-SCENE, .png and .pdf",
+    make=make)

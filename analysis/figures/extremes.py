@@ -107,8 +107,8 @@ def update_errors(file):
     worst = numpy.maximum(numpy.maximum(numbers["radius"], numbers["count"]), numbers["estimate"])
     unknown = ~table["update"].isin(UPDATES) | ~table["axis"].isin(UPDATE_AXES)
     if unknown.any():
-        raise InputError(f"{tables.place(file, unknown)}: expected an update that is one of {', '.join(UPDATES)} and an axis that is one "
-                         f"of {', '.join(UPDATE_AXES)}")
+        raise InputError(f"{tables.place(file, unknown)}: expected an axis that is one of {', '.join(UPDATE_AXES)} and an update that "
+                         f"is one of {', '.join(UPDATES)}")
     return list(zip(table["axis"], numbers["value"], table["update"], worst))
 
 
@@ -240,5 +240,7 @@ def add_options(parser):
                         "extremes.toml, with update.csv")
 
 
-COMMAND = Command("extremes", __doc__, "extremes.csv and figures/extremes.png and .pdf, both in RESULTS", make,
-                  is_for=lambda results: False, add_options=add_options)    # it wants two folders
+COMMAND = Command(
+    name="extremes", summary="where the answer stops being right, of two folders of results", about=__doc__,
+    writes="extremes.csv and figures/extremes.png and .pdf, both in RESULTS",
+    make=make, is_for=lambda results: False, add_options=add_options)    # it wants two folders

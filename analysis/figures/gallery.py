@@ -56,9 +56,9 @@ def collect(scene):
         else:
             found.said.append(f"{scene.scene}: {label}: no snapshots, so not in the gallery")
         if found.reference is None and shown:
-            judge, (snapshot, *_) = references.reference_of(scene, scene.run(run).description), by_pass.values()
-            found.reference = images.read_reference(judge.halves, "total", False) if judge else None
+            judge, found.reference = references.read_reference_of(scene, scene.run(run))
             if found.reference is not None:
+                snapshot = next(iter(by_pass.values()))
                 images.require_same_size(snapshot, next(iter(shown.values()))[0], judge.halves[0], found.reference)
                 found.exposure = pictures.exposure_for(pictures.lit_by_scene(found.reference, snapshot))
     if found.methods and found.exposure is None:
@@ -120,4 +120,7 @@ def add_options(parser):
                         help="factor on radiance (default: for each scene, 97%% of what its lights light is below white)")
 
 
-COMMAND = Command("gallery", __doc__, "figures/gallery.png and .pdf", make, is_for=pictures.has_snapshots, add_options=add_options)
+COMMAND = Command(
+    name="gallery", summary="scenes by recorded passes, PPM above PM", about=__doc__,
+    writes="figures/gallery.png and .pdf",
+    make=make, is_for=pictures.has_snapshots, add_options=add_options)

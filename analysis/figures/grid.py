@@ -80,12 +80,11 @@ def final_difference(scene, rows):
     of_seed = rows[rows["seed"] == rows["seed"].min()]
     run = of_seed["run"].iloc[0]
     by_pass = scene.run(run).snapshots
-    judge = references.reference_of(scene, scene.run(run).description)
-    if not by_pass or not judge or not judge.halves:
+    judge, reference = references.read_reference_of(scene, scene.run(run))
+    if not by_pass or reference is None:
         return None
-    halves = judge.halves
-    image, reference = images.read_component(by_pass[max(by_pass)], "total"), images.read_reference(halves, "total", False)
-    images.require_same_size(by_pass[max(by_pass)], image, halves[0], reference)
+    image = images.read_component(by_pass[max(by_pass)], "total")
+    images.require_same_size(by_pass[max(by_pass)], image, judge.halves[0], reference)
     return (image - reference).mean(axis=2)
 
 
@@ -140,4 +139,7 @@ def is_sweep(results):
     return all(len(values_by_setting(scene)) == 2 for scene in results.scenes())
 
 
-COMMAND = Command("grid", __doc__, "figures/grid-SCENE and differences-SCENE, .png and .pdf", make, is_for=is_sweep)
+COMMAND = Command(
+    name="grid", summary="a sweep over two settings: heat map and difference images", about=__doc__,
+    writes="figures/grid-SCENE and differences-SCENE, .png and .pdf",
+    make=make, is_for=is_sweep)

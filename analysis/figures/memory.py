@@ -68,7 +68,11 @@ def draw(scene):
 
 
 def make(results, _):
-    return save_scenes(results, "memory", draw, "no method emits photons, so there is nothing to draw")
+    return save_scenes(results, "memory", ((scene.scene, draw(scene)) for scene in results.scenes()),
+                       "no method emits photons, so there is nothing to draw")
 
 
-COMMAND = Command("memory", __doc__, "figures/memory-SCENE.png and .pdf", make)
+COMMAND = Command(
+    name="memory", summary="bytes of photons and hit points against light paths", about=__doc__,
+    writes="figures/memory-SCENE.png and .pdf",
+    make=make)

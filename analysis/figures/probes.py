@@ -8,10 +8,10 @@ methods it counts photons found, and density is there only where those lie in th
 
 from matplotlib import lines
 
-from analysis.command import Command
+from analysis.command import Command, has
 from analysis.drawing import style
 from analysis.drawing.panels import panels_over_legend
-from analysis.drawing.saving import save
+from analysis.drawing.saving import save_scenes
 from analysis.records import files, records, tables
 from analysis.records.files import InputError
 
@@ -75,13 +75,11 @@ def draw(rows, labels, styles):
 
 def make(results, _):
     rows, styles = read_probes(results), style.method_styles(results)
-    for scene, own in rows.groupby("scene", sort=False):
-        figure = draw(own[own["seed"] == own["seed"].min()], results.labels, styles)
-        yield from save(figure, results, f"probes-{files.as_file_name(scene)}")
+    return save_scenes(results, "probes", ((scene, draw(own[own["seed"] == own["seed"].min()], results.labels, styles))
+                                           for scene, own in rows.groupby("scene", sort=False)))
 
 
-def has_probes(results):
-    return files.is_there(results.folder / "probes.csv")
-
-
-COMMAND = Command("probes", __doc__, "figures/probes-SCENE.png and .pdf", make, is_for=has_probes)
+COMMAND = Command(
+    name="probes", summary="radius, photons, density and radiance at single pixels", about=__doc__,
+    writes="figures/probes-SCENE.png and .pdf",
+    make=make, is_for=has("probes.csv"))

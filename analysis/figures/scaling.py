@@ -137,8 +137,8 @@ def statements(table):
         resident = curve(table, "passes", "peak_rss_mib", integrator=integrator)
         if len(points) > 1:
             said.append(f"{name}, {points[0][0]:.0f} to {points[-1][0]:.0f} passes: map from "
-                        f"{points[0][1] / MEBIBYTE:.3g} to {points[-1][1] / MEBIBYTE:.3g} MiB, exponent {exponent(points):.2f}; process "
-                        f"from {resident[0][1]:.0f} to {resident[-1][1]:.0f} MiB")
+                        f"{points[0][1] / MEBIBYTE:.3g} to {points[-1][1] / MEBIBYTE:.3g} MiB, exponent {exponent(points):.2f}; "
+                        f"process from {resident[0][1]:.0f} to {resident[-1][1]:.0f} MiB")
     return said
 
 
@@ -219,5 +219,7 @@ def add_options(parser):
     parser.add_argument("--run", metavar="PROGRAM", type=Path, help="make the records first, with this photonlab")
 
 
-COMMAND = Command("scaling", __doc__, "scaling.csv (with --run) and figures/scaling.png and .pdf", make, starts_from=NAME,
-                  read=Measured, add_options=add_options)
+COMMAND = Command(
+    name="scaling", summary="seconds and memory of a pass against its photons and hit points", about=__doc__,
+    writes="scaling.csv (with --run) and figures/scaling.png and .pdf",
+    make=make, starts_from=NAME, read=Measured, add_options=add_options)

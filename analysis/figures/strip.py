@@ -102,8 +102,7 @@ def add_entry(strip, scene, label, rows, run, number, component):
     image = images.read_component(file, component)
     if image is None:
         return f"{file} has no layer {component}"
-    judge = references.reference_of(scene, run.description)
-    reference = images.read_reference(judge.halves, component, carried) if judge else None
+    judge, reference = references.read_reference_of(scene, run, component, carried)
     if reference is not None:
         images.require_same_size(file, image, judge.halves[0], reference)
         if strip.reference is None:
@@ -232,5 +231,7 @@ def add_options(parser):
                         help="factor on radiance in the pictures (default: 97%% of the lit pixels are below white)")
 
 
-COMMAND = Command("strip", __doc__, "figures/strip-SCENE.png and .pdf (strip-SCENE-COMPONENT for a single component)", make,
-                  is_for=pictures.has_snapshots, add_options=add_options)
+COMMAND = Command(
+    name="strip", summary="PM, PPM and reference side by side, with their differences", about=__doc__,
+    writes="figures/strip-SCENE.png and .pdf (strip-SCENE-COMPONENT for a single component)",
+    make=make, is_for=pictures.has_snapshots, add_options=add_options)

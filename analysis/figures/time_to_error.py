@@ -81,4 +81,7 @@ def add_options(parser):
                         help="errors to be reached (default: 0.1 0.01 0.001)")
 
 
-COMMAND = Command("time_to_error", __doc__, "time-to-error.csv and figures/time-to-error, .png and .pdf", make, add_options=add_options)
+COMMAND = Command(
+    name="time_to_error", summary="seconds to a given relMSE, by wall clock and by processor", about=__doc__,
+    writes="time-to-error.csv and figures/time-to-error, .png and .pdf",
+    make=make, add_options=add_options)

@@ -19,7 +19,7 @@ from matplotlib import lines
 from analysis.command import Command
 from analysis.drawing import style
 from analysis.drawing.panels import panels_over_legend
-from analysis.drawing.saving import RECORDS, save
+from analysis.drawing.saving import RECORDS, save_scenes
 from analysis.records import files, tables
 from analysis.records.columns import as_number
 from analysis.statistics import errors
@@ -84,12 +84,8 @@ def make(results, options):
     noise = errors.noise_note(results.rows[results.rows["component"] == "total"])
     text = f"{words(of_scenes, clock, noise)}\n<!-- {RECORDS} {results.hash} -->\n"
     yield files.replace_file(results.folder / "tradeoff.md", text)
-    for scene, table in zip(scenes, of_scenes):
-        figure = draw(table, results.columns, clock, noise)
-        if figure is None:
-            yield f"{scene.scene}: nothing is resolved, so there is nothing to draw"
-        else:
-            yield from save(figure, results, f"tradeoff-{files.as_file_name(scene.scene)}")
+    figures = ((scene.scene, draw(table, results.columns, clock, noise)) for scene, table in zip(scenes, of_scenes))
+    yield from save_scenes(results, "tradeoff", figures, "nothing is resolved, so there is nothing to draw")
 
 
 def has_default(results):
@@ -100,5 +96,7 @@ def add_options(parser):
     parser.add_argument("--clock", choices=CLOCKS, default="seconds", help="what time is taken from (default: seconds)")
 
 
-COMMAND = Command("tradeoff", __doc__, "tradeoff.csv, tradeoff.md and figures/tradeoff-SCENE, .png and .pdf", make,
-                  is_for=has_default, add_options=add_options)
+COMMAND = Command(
+    name="tradeoff", summary="what each setting buys and costs beside a method named default", about=__doc__,
+    writes="tradeoff.csv, tradeoff.md and figures/tradeoff-SCENE, .png and .pdf",
+    make=make, is_for=has_default, add_options=add_options)

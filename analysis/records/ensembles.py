@@ -151,6 +151,16 @@ def regions_of(ensemble, shape):
     return regions
 
 
+def read_points(results, left_out):
+    """(ensemble, records of its runs), one after another; what has no runs is told to `left_out`."""
+    for ensemble in read_ensembles(results):
+        own = rows_of(ensemble, results)
+        if own is None:
+            left_out.append(f"{ensemble.folder}: has no runs in iterations.csv; left out")
+        else:
+            yield ensemble, own
+
+
 def rows_of(ensemble, results):
     """The records of a point's runs; None for a point that the experiment does not have any more."""
     rows = results.rows[results.rows["run"].map(methods.point_of) == ensemble.point]

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from analysis.records import files, kept_files
+from analysis.records import files, images, kept_files
 from analysis.records.files import InputError
 
 IS_ANOTHER = "is another one than the errors in the records are against"
@@ -45,6 +45,12 @@ def reference_of(records, description):
                 is_same = key is None or kept_files.hash_of_stream(stream) == key
             return Reference(path, [found] if is_same else [], "" if is_same else IS_ANOTHER)
     return Reference(path, [], "is not there")
+
+
+def read_reference_of(records, run, component="total", photons_carry_direct=False):
+    """(what a run was judged by, its radiance of a component), each None where there is none."""
+    judge = reference_of(records, run.description)
+    return judge, images.read_reference(judge.halves, component, photons_carry_direct) if judge else None
 
 
 def reference_of_halves(path, folder, halves, key):

@@ -66,7 +66,8 @@ def page(results, seeds):
     title = " / ".join(distinct(found(run, "title") for run in runs.values())) or experiments
     return Template(part("page.html")).substitute(
         sections, experiments=escape(experiments), title=escape(title), style=part("page.css"), facts=facts(rows, runs),
-        missing=missing_list(missing), contents=" · ".join(f'<a href="#{anchor}">{name}</a>' for anchor, name, there in anchors if there),
+        missing=missing_list(missing),
+        contents=" · ".join(f'<a href="#{anchor}">{name}</a>' for anchor, name, there in anchors if there),
         scenes=scene_table(rows, runs), results="".join(error_table(scene) + cost_table(scene, runs) for scene in results.scenes()),
         data=data_of(scenes), script=part("page.js") + part("viewer.js"))
 
@@ -81,4 +82,7 @@ def add_options(parser):
                         "has images of, of those with snapshots (default: 2); the page grows with it")
 
 
-COMMAND = Command("report", __doc__, "report.html", make, add_options=add_options)
+COMMAND = Command(
+    name="report", summary="all of it as one HTML page that needs nothing else", about=__doc__,
+    writes="report.html",
+    make=make, add_options=add_options)

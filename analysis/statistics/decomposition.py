@@ -9,8 +9,8 @@ bias.
 
 import numpy
 
-from analysis.command import Command
-from analysis.records import ensembles, files, images, methods, records, tables
+from analysis.command import Command, has
+from analysis.records import ensembles, images, methods, records, tables
 from analysis.records.files import InputError
 from analysis.statistics.moments import QUANTITIES, decompose, moments_of, standard_errors
 
@@ -83,19 +83,12 @@ def write_images(ensemble, results, number):
 
 
 def make(results, options):
-    table = []
-    for ensemble in ensembles.read_ensembles(results):
-        own = ensembles.rows_of(ensemble, results)
-        if own is None:
-            yield f"{ensemble.folder}: has no runs in iterations.csv; left out"
-            continue
+    table, left_out = [], []
+    for ensemble, own in ensembles.read_points(results, left_out):
         table += table_of(ensemble, results, own)
         write_images(ensemble, results, pass_of_images(ensemble, options.images))
+    yield from left_out
     yield tables.write_derived(results, NAME, columns_of(results.columns), table)
-
-
-def has_ensembles(results):
-    return files.is_there(results.folder / "ensembles")
 
 
 def add_options(parser):
@@ -103,5 +96,7 @@ def add_options(parser):
                         "last)")
 
 
-COMMAND = Command("decomposition", __doc__, "decomposition.csv and, of one pass, images of bias and variance in decomposition/", make,
-                  is_for=has_ensembles, add_options=add_options)
+COMMAND = Command(
+    name="decomposition", summary="variance and squared bias, into decomposition.csv and images", about=__doc__,
+    writes="decomposition.csv and, of one pass, images of bias and variance in decomposition/",
+    make=make, is_for=has("ensembles"), add_options=add_options)

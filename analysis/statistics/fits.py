@@ -26,10 +26,10 @@ has it by scene, component, region and pass, with the alphas of 5% and more, the
 error.
 """
 
-from analysis.command import Command
+from analysis.command import Command, has
 from analysis.records import ensembles, files, methods, records, tables
 from analysis.statistics import best_alphas, theory
-from analysis.statistics.decomposition import has_ensembles, text
+from analysis.statistics.decomposition import text
 from analysis.statistics.moments import decompose, moments_of, replicates
 from analysis.statistics.slopes import default_window, fit
 
@@ -89,15 +89,11 @@ def predictions_of_region(predicted, moments, component, first_pass, region, gro
 
 
 def make(results, options):
-    table, families = [], {}
-    for ensemble in ensembles.read_ensembles(results):
-        own = ensembles.rows_of(ensemble, results)
-        if own is None:
-            yield f"{ensemble.folder}: has no runs in iterations.csv; left out"
-            continue
+    table, families, left_out = [], {}, []
+    for ensemble, own in ensembles.read_points(results, left_out):
         first_pass, last_pass, passes = passes_in_window(ensemble, options)
         if len(passes) < 3:
-            yield f"{ensemble.folder}: fewer than 3 recorded passes from {first_pass} to {last_pass}, so no slopes"
+            left_out.append(f"{ensemble.folder}: fewer than 3 recorded passes from {first_pass} to {last_pass}, so no slopes")
         moments = moments_by_component(ensemble, results)
         first = own.iloc[0]
         for component in moments:
@@ -107,6 +103,7 @@ def make(results, options):
                 rest = tuple(first[["scene", *best_alphas.family_of(results.columns)]])
                 families.setdefault((rest, component), {})[first["alpha"]] = best_alphas.Point(own, ensemble.seeds,
                                                                                              moments[component])
+    yield from left_out
     yield tables.write_derived(results, NAME, columns_of(results.columns), table)
     yield from write_best(results, {key: family for key, family in families.items() if len(family) > 1})
 
@@ -131,5 +128,7 @@ def add_options(parser):
     parser.add_argument("--to", dest="last", type=int, metavar="PASS", help="last pass of the window (default: the last)")
 
 
-COMMAND = Command("fits", __doc__, "fits.csv and, where alpha was swept, best-alphas.csv", make, is_for=has_ensembles,
-                  add_options=add_options)
+COMMAND = Command(
+    name="fits", summary="slopes beside theory, into fits.csv; the best alphas", about=__doc__,
+    writes="fits.csv and, where alpha was swept, best-alphas.csv",
+    make=make, is_for=has("ensembles"), add_options=add_options)

@@ -21,8 +21,8 @@ NAME = "tradeoff.csv"
 DEFAULT = "default"
 CLOCKS = {"seconds": "s", "cpu_seconds": "CPU s"}
 RATIOS = ["error", "time"]
-COLUMNS = ["scene", "point", "default", "knob", "value", "default_value", "seeds", "pass", "rmse", "rmse_error", "seconds", "seconds_error",
-           *(f"{name}_ratio{part}" for name in RATIOS for part in ["", "_low", "_high"]), "pareto"]
+COLUMNS = ["scene", "point", "default", "knob", "value", "default_value", "seeds", "pass", "rmse", "rmse_error", "seconds",
+           "seconds_error", *(f"{name}_ratio{part}" for name in RATIOS for part in ["", "_low", "_high"]), "pareto"]
 
 
 def knobs_of(own, default, columns, settings):

@@ -15,17 +15,17 @@ from unittest import mock
 
 from matplotlib import pyplot
 
-from support import whole_results
+from support import ANALYSIS, whole_results
 from support.in_folder import run
 
 # What each reads of the folder that whole_results makes, beside iterations.csv.
 RUN = "runs/cornell-box_default_seed-1"
 IMAGES = [f"{RUN}/run.json", f"{RUN}/snapshots/pass-000032.exr", "reference/half_b.exr"]
 SUMS = ["ensembles/cornell-box_b/ensemble.json", "ensembles/cornell-box_b/slot-02.exr", "reference/half_a.exr"]
-READS = {"convergence": [], "strip": IMAGES, "gallery": IMAGES, "decomposition": SUMS, "fits": SUMS, "bias_variance": ["decomposition.csv"],
-         "memory": [], "best_alpha": ["best-alphas.csv"], "grid": IMAGES, "equal_time": [*IMAGES[:2], "decomposition.csv"],
-         "time_to_error": [], "tradeoff": [], "probes": ["probes.csv"], "scaling": [], "report": [*IMAGES, "fits.csv",
-                                                                                                 "decomposition.csv"]}
+READS = {"convergence": [], "strip": IMAGES, "gallery": IMAGES, "decomposition": SUMS, "fits": SUMS,
+         "bias_variance": ["decomposition.csv"], "memory": [], "best_alpha": ["best-alphas.csv"], "grid": IMAGES,
+         "equal_time": [*IMAGES[:2], "decomposition.csv"], "time_to_error": [], "tradeoff": [], "probes": ["probes.csv"], "scaling": [],
+         "report": [*IMAGES, "fits.csv", "decomposition.csv"]}
 FIGURES = {"convergence": ["convergence-cornell-box"], "strip": ["strip-cornell-box"], "gallery": ["gallery"],
            "bias_variance": ["bias-variance-cornell-box"], "memory": ["memory-cornell-box"], "best_alpha": ["best-alpha-cornell-box"],
            "grid": ["grid-cornell-box", "differences-cornell-box"], "equal_time": ["equal-time-cornell-box"],
@@ -83,11 +83,13 @@ class Commands(unittest.TestCase):
                 if name.endswith((".png", ".csv")):
                     self.assertEqual(drawn[name], data, name)
 
-    def test_help_lists_the_commands_and_says_what_each_writes(self):
+    def test_help_and_the_page_list_the_commands_and_help_says_what_each_writes(self):
         code, listed, _ = run("--help")
         self.assertEqual(code, 0)
+        page = (ANALYSIS / "README.md").read_text(encoding="utf-8")
         for name in [*whole_results.COMMANDS, "extremes"]:
-            self.assertRegex(listed, rf"\n  {name} +[A-Z]")
+            summary = re.search(rf"\n  {name} +(.*)\n", listed)[1]
+            self.assertIn(f"| `{name}` | {summary} |", page)
             code, output, _ = run(name, "--help")
             self.assertEqual(code, 0)
             for file in FIGURES.get(name, []):

@@ -50,7 +50,8 @@ class BestAlpha(InFolder):
         self.assertIn("candidates", self.refusal_of("best_alpha"))
         write_best(self.results)
         synthetic.write_csv(self.results, synthetic.rows(lambda *_: 2e-4))
-        self.assertIn("best-alphas.csv: was made from other records than those in iterations.csv; run `analysis fits`", self.refusal_of("best_alpha"))
+        self.assertIn("best-alphas.csv: was made from other records than those in iterations.csv; run `analysis fits`",
+                      self.refusal_of("best_alpha"))
 
 
 if __name__ == "__main__":

@@ -27,7 +27,8 @@ class Gallery(InFolder):
 
     def test_captions_are_the_records(self):
         self.make_results([1])
-        self.assertEqual([shown[1][1] for _, shown in gallery.collect(self.read()).methods], ["RMSE 0.010, 0.26 s", "RMSE 0.020, 0.26 s"])
+        self.assertEqual([shown[1][1] for _, shown in gallery.collect(self.read()).methods],
+                         ["RMSE 0.010, 0.26 s", "RMSE 0.020, 0.26 s"])
 
     def test_figures_are_written_with_and_without_a_reference(self):
         for reference in [None, "reference/box"]:

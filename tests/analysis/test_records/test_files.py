@@ -130,7 +130,8 @@ class Writing(InFolder):
         self.assert_only("figures", "table.csv")
 
     def in_another_process(self, code, **options):
-        return subprocess.Popen([sys.executable, "-c", f"{IN_A_PROCESS}file = {str(self.file)!r}\n{code}"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
+        return subprocess.Popen([sys.executable, "-c", f"{IN_A_PROCESS}file = {str(self.file)!r}\n{code}"], stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE, text=True, **options)
 
     def test_a_limit_on_the_size_of_files_leaves_what_was_there(self):
         self.file.write_text("old")
