@@ -12,6 +12,7 @@
 #include "core/nearest.h"
 #include "experiment/reference.h"
 #include "image/exr.h"
+#include "integrators/settings.h"
 
 namespace photonlab {
 
@@ -42,14 +43,8 @@ void compare_files(const CompareOptions& options) {
         throw InputError(options.image.string(),
                          fmt::format("--component {}: this image or the reference {} does not have it to compare",
                                      options.component, options.reference.string()));
-    print("mse", errors->mse);
-    print("mse_unbiased", errors->mse_unbiased);
-    print_output("{:<16} {}; as figures show it: {}\n", "rmse", errors->rmse, describe_rmse(*errors));
-    print("relmse", errors->relmse);
-    print("smape", errors->smape);
-    print("bias", errors->bias);
-    print("max_error", errors->max_error);
-    print("reference_floor", errors->reference_floor);
+    for (const Metric& metric : metrics()) print(metric.name, errors->of(metric.name));
+    print_output("{:<16} {}\n", "as figures show", describe_rmse(*errors));
     print_output("{:<16} {}\n", "nonfinite", errors->nonfinite);
 }
 

@@ -1,6 +1,7 @@
 #include "app/options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -66,17 +67,28 @@ std::string require_folder_name(const std::string& text) {
     return fmt::format("expected the name of a folder, got \"{}\", that of a file of {}", text, kind->name);
 }
 
+namespace {
+
+/// "ppm: share of photons kept a pass, a number in (0, 1] [0.7]", with other settings called as options are.
+std::string help_of(const SettingField& field) {
+    const std::vector<std::string_view> users = users_of(field.name);
+    const bool is_for_all = users.size() == integrator_kinds().size();
+    std::string help = is_for_all ? "" : fmt::format("{}: ", fmt::join(users, ", "));
+    help += field.meaning;
+    for (const SettingField& other : setting_fields())
+        for (const std::string name = fmt::format("`{}`", other.name); help.find(name) != std::string::npos;)
+            help.replace(help.find(name), name.size(), other.option);
+    const std::string values =
+        field.name == "integrator" ? fmt::format("{}", fmt::join(users, ", ")) : describe_values(field);
+    if (!values.empty()) help += "; " + values;
+    return help + fmt::format(" [{}]", default_of(field));
+}
+
+}  // namespace
+
 void MethodOptions::add_to(CLI::App& command) {
-    std::string integrators;
-    for (const IntegratorKind& kind : integrator_kinds())
-        integrators += (integrators.empty() ? "" : ", ") + std::string(kind.name);
-    const MethodSettings defaults;
-    for (const SettingField& field : setting_fields()) {
-        std::string meaning(field.meaning);
-        if (field.name == "integrator") meaning += ": " + integrators;
-        if (field.name != "max_depth") meaning += fmt::format(" [{}]", plain_text(field.write(defaults)));
-        command.add_option(std::string(field.option), texts_[std::string(field.name)], meaning)->group("Method");
-    }
+    for (const SettingField& field : setting_fields())
+        command.add_option(std::string(field.option), texts_[std::string(field.name)], help_of(field))->group("Method");
 }
 
 ChosenSettings MethodOptions::settings() const {

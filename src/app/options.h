@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "experiment/settings_io.h"
+#include "integrators/chosen_settings.h"
 #include "scene/scene.h"
 
 namespace photonlab {

@@ -25,12 +25,12 @@
 #include "experiment/recorder.h"
 #include "experiment/reference.h"
 #include "experiment/run_record.h"
-#include "render/run_methods.h"
 #include "experiment/version.h"
 #include "image/exr.h"
 #include "image/image_codecs.h"
 #include "image/png.h"
 #include "integrators/registry.h"
+#include "render/run_methods.h"
 #include "scene/loader.h"
 #include "transport/plain_images.h"
 
@@ -99,9 +99,9 @@ void print_summary(const RunState& state, const RunSettings& settings, const Sce
     if (state.paths_cut > 0) print_output("cut         {} photon paths ended by the cap on edges\n", state.paths_cut);
     if (errors) {
         print_output("rmse        {}\n", describe_rmse(*errors));
-        if (errors->mse_unbiased)
-            print_output("mse         {:.6g}; without the reference's noise {:.6g}\n", errors->mse,
-                         *errors->mse_unbiased);
+        const std::optional<double> unbiased = errors->of("mse_unbiased");
+        if (unbiased)
+            print_output("mse         {:.6g}; without the reference's noise {:.6g}\n", *errors->of("mse"), *unbiased);
     }
 }
 
@@ -120,12 +120,20 @@ struct WrittenFile {
     const FileKind* kind;  ///< nullptr: a checkpoint
 };
 
+/// What says beside a table what its columns are.
+std::filesystem::path columns_file(std::filesystem::path csv) {
+    return csv.replace_extension(".columns.json");
+}
+
 std::vector<WrittenFile> written_files(const RenderOptions& options, const std::vector<std::uint64_t>& snapshots) {
     const auto& [exr, png, csv] = file_kinds;
     std::vector<WrittenFile> written{{"-o", options.output, &exr}};
     for (const std::uint64_t pass : snapshots)
         written.push_back({"--snapshots", snapshot_file(options.output, pass), &exr});
-    if (!options.csv.empty()) written.push_back({"--csv", options.csv, &csv});
+    if (!options.csv.empty()) {
+        written.push_back({"--csv", options.csv, &csv});
+        written.push_back({"--csv", columns_file(options.csv), nullptr});
+    }
     if (!options.png.empty()) written.push_back({"--png", options.png, &png});
     if (!options.checkpoint.empty()) written.push_back({"--checkpoint", options.checkpoint, nullptr});
     return written;
@@ -199,6 +207,7 @@ void render(const RenderOptions& options) {
     require_writable(options.output);
     for (const std::string& file : {options.csv, options.png, options.checkpoint})
         if (!file.empty()) require_writable(file);
+    if (!options.csv.empty()) require_writable(columns_file(options.csv));
     if (!snapshots.empty()) require_writable(snapshot_file(options.output, snapshots.back()));  // the longest name
     if (!options.png.empty()) image_codecs();  // so large that there may be no room for them in memory
 
@@ -288,6 +297,7 @@ void render(const RenderOptions& options) {
                                           ? "nothing is saved without --checkpoint FILE"
                                           : options.checkpoint + " is saved, and --resume goes on from it"));
     if (!options.checkpoint.empty()) discard(checkpoint);
+    if (!options.csv.empty()) write_columns(columns_file(options.csv));
 
     print_summary(shown, settings, scene, hit_points.points.size(), errors);
     for (const std::string& reason : why_images_are_plain(scene, hit_points)) print_output("note        {}\n", reason);

@@ -27,7 +27,7 @@
 #include <string>
 #include <vector>
 
-#include "experiment/settings_io.h"
+#include "experiment/json.h"
 #include "image/image.h"
 
 namespace photonlab {

@@ -379,7 +379,7 @@ private:
                 require_used(chosen, field);
             });
             const bool varies = values.values.size() > 1;
-            const std::string text = plain_text(field.write(chosen.values));
+            const std::string text = plain_text(field.get(chosen.values));
             add_runs(scene, method, index + 1, chosen,
                      varies ? fmt::format("{}_{}-{}", swept, field.name, text) : swept);
         }

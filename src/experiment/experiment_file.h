@@ -25,7 +25,7 @@
 #include <string>
 #include <vector>
 
-#include "experiment/settings_io.h"
+#include "integrators/chosen_settings.h"
 #include "scene/scene.h"
 
 namespace photonlab {

@@ -15,7 +15,7 @@
 #include "experiment/reference.h"
 #include "experiment/results_folder.h"
 #include "experiment/run_record.h"
-#include "experiment/settings_io.h"
+#include "experiment/settings_json.h"
 #include "experiment/version.h"
 #include "integrators/registry.h"
 #include "scene/loader.h"

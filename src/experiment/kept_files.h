@@ -19,7 +19,7 @@
 #include <optional>
 #include <string>
 
-#include "experiment/settings_io.h"
+#include "experiment/json.h"
 
 namespace photonlab {
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "core/files.h"
-#include "experiment/recorder.h"
+#include "experiment/columns.h"
 #include "experiment/run_record.h"
 
 namespace photonlab {
@@ -130,6 +130,7 @@ MergedRecords merge_records(const std::string& experiment, const std::filesystem
     for (const RunToMerge& run : runs) merge_run(tables, run, merged);
     merged.of_no_run = count_other_runs(results, runs);
     write_tables(experiment, results, tables);
+    write_columns(results / "columns.json");
     return merged;
 }
 

@@ -1,7 +1,8 @@
 // The records of an experiment, merged from those of its finished runs:
 //
 //     RESULTS/iterations.csv, RESULTS/probes.csv    their rows, in the order of the experiment
-//     RESULTS/merged.json                           what these two files are
+//     RESULTS/columns.json                          what the columns of iterations.csv are (columns.h)
+//     RESULTS/merged.json                           what the two tables are
 //
 //     {"schema": 1, "experiment": "alpha-study",
 //      "files": {"iterations.csv": [{"bytes": 51200, "hash": "..."}], "probes.csv": [...]},

@@ -1,7 +1,4 @@
-// The records: one row per run, recorded pass and component, in CSV that pandas reads without being told anything. One
-// table of columns makes the header and the rows.
-//
-// Numbers have the fewest digits that read back the same; what does not apply is empty.
+// Writes a run's records (columns.h) as its passes finish.
 
 #pragma once
 
@@ -9,39 +6,15 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/files.h"
+#include "experiment/columns.h"
 #include "experiment/kept_files.h"
 #include "experiment/reference.h"
-#include "render/pass_loop.h"
 #include "image/image.h"
-#include "image/metrics.h"
 
 namespace photonlab {
-
-/// What is the same in every row of a run.
-struct RunIdentity {
-    std::string experiment;
-    std::string run;
-    std::string scene;
-    RunSettings settings;
-    int width = 0;
-    int height = 0;
-    int samples_per_pixel = 1;
-    std::uint64_t hit_points = 0;
-};
-
-/// One row.
-struct Record {
-    const RunIdentity& identity;
-    const RunState& state;
-    std::string_view component;
-    std::optional<ErrorMetrics> errors;      ///< empty without a reference for this component
-    std::optional<std::uint64_t> nonfinite;  ///< pixels of the component with a non-finite channel
-    double peak_rss_mib = 0.0;
-};
 
 /// A pixel whose value is not finite.
 struct NonfinitePixel {
@@ -50,18 +23,6 @@ struct NonfinitePixel {
     int x = 0;
     int y = 0;
 };
-
-/// The header line, without its end.
-std::string csv_header();
-
-/// A row, without its end.
-std::string csv_row(const Record& record);
-
-/// A value as it stands in a table: in quotes when it holds a comma, a quote or a line end, as RFC 4180 wants it. What
-/// a spreadsheet would take for a formula, a text that begins with = + - @, a tab or a carriage return and is no
-/// number, gets an apostrophe in front, as does what begins so behind apostrophes: whoever takes one away again has the
-/// text back. [OWASP, "CSV Injection"]
-std::string csv_cell(const std::string& text);
 
 /// True when nothing but photons carries direct light in this method.
 bool photons_carry_direct(const MethodSettings& settings);

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "experiment/settings_io.h"
+#include "experiment/json.h"
 #include "image/image.h"
 #include "image/metrics.h"
 

@@ -157,7 +157,7 @@ Json noise_floor(const Image& half_a, const Image& half_b) {
     Json floor = Json::object();
     for (const std::string& component : components) {
         const auto errors = judge(half_a, reference, component, false);
-        floor[component] = errors ? Json(errors->reference_floor.value_or(0.0)) : Json();
+        floor[component] = errors ? Json(errors->of("reference_floor").value_or(0.0)) : Json();
     }
     return floor;
 }

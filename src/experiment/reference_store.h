@@ -21,8 +21,8 @@
 
 #include "experiment/checkpoint.h"
 #include "experiment/experiment_file.h"
+#include "experiment/json.h"
 #include "experiment/reference.h"
-#include "experiment/settings_io.h"
 #include "image/image.h"
 #include "scene/scene.h"
 

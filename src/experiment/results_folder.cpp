@@ -7,10 +7,11 @@
 #include <optional>
 #include <string>
 
+#include "core/csv.h"
 #include "core/files.h"
+#include "experiment/json.h"
 #include "experiment/kept_files.h"
 #include "experiment/recorder.h"
-#include "experiment/settings_io.h"
 #include "experiment/version.h"
 
 namespace photonlab {

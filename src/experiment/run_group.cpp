@@ -6,6 +6,7 @@
 #include <chrono>
 #include <optional>
 
+#include "core/csv.h"
 #include "core/file_lock.h"
 #include "core/files.h"
 #include "experiment/merged_records.h"

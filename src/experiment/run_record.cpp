@@ -7,6 +7,7 @@
 
 #include "core/files.h"
 #include "experiment/version.h"
+#include "integrators/chosen_settings.h"
 #include "integrators/registry.h"
 
 namespace photonlab {

@@ -21,7 +21,7 @@
 
 #include "experiment/kept_files.h"
 #include "experiment/recorder.h"
-#include "experiment/settings_io.h"
+#include "experiment/settings_json.h"
 #include "image/exr.h"
 #include "scene/scene.h"
 #include "transport/camera_pass.h"

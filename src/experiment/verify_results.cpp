@@ -190,11 +190,21 @@ private:
         if (!merged && (is_described || !finished_.empty()))
             fault(description, fmt::format("is {}; {}", is_described ? "damaged" : "missing", merge_again));
         if (merged) ++found_.files;
+        if (merged) check_columns();
         for (const char* name : {"iterations.csv", "probes.csv"}) {
             std::vector<FileStamp> stamps;
             if (merged && merged->files.contains(name)) stamps = merged->files.at(name);
             guarded([&] { check_table(name, stamps, merged.has_value()); });
         }
+    }
+
+    void check_columns() {
+        const std::filesystem::path file = results_ / "columns.json";
+        const bool is_there = std::filesystem::exists(file);
+        if (is_there && checked_json(read_text_file(file)))
+            ++found_.files;
+        else
+            fault(file, fmt::format("is {}; {}", is_there ? "damaged" : "missing", merge_again));
     }
 
     void check_table(const std::string& name, const std::vector<FileStamp>& stamps, bool is_described) {

@@ -27,9 +27,4 @@ void take_pass(GatherStatistics& statistics, ScheduleName schedule, double alpha
     statistics.squared_radius = std::max(statistics.squared_radius, least_squared_radius);
 }
 
-void require_alpha(double alpha) {
-    if (!(alpha > 0.0 && alpha <= 1.0))
-        throw InputError(fmt::format("alpha: expected a number in (0, 1], got {}", alpha));
-}
-
 }  // namespace photonlab

@@ -53,7 +53,4 @@ struct PassGather {
 void take_pass(GatherStatistics& statistics, ScheduleName schedule, double alpha, const PassGather& gathered,
                double least_squared_radius);
 
-/// Throws InputError unless 0 < alpha <= 1.
-void require_alpha(double alpha);
-
 }  // namespace photonlab

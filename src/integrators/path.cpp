@@ -157,6 +157,8 @@ private:
 
 IntegratorKind path_kind() {
     return {.name = "path",
+            .label = "path tracing",
+            .paper = "Kajiya 1986, with next-event estimation and multiple importance sampling",
             .needs =
                 [](const MethodSettings&) {
                     return Needs{.direct = Needs::Direct::ByItself, .passes = Needs::Passes::Independent};

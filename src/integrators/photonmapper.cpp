@@ -36,7 +36,8 @@ public:
         global_.k = static_cast<std::size_t>(settings.k);
         caustic_.k = static_cast<std::size_t>(settings.caustic_k);
         const Scene& scene = context.scene;
-        global_.max_radius = chosen_radius(settings.max_radius, default_max_radius_share * scene.bounding_radius, scene);
+        global_.max_radius =
+            chosen_radius(settings.max_radius, default_max_radius_share * scene.bounding_radius, scene);
         caustic_.max_radius =
             chosen_radius(settings.caustic_max_radius, default_caustic_share * global_.max_radius, scene);
         const std::size_t points = context.hit_points.points.size();
@@ -69,9 +70,9 @@ public:
 
     /// Radii are those of the global map.
     IntegratorReport report() const override {
-        IntegratorReport report{.photons_gathered = photons_gathered_,
-                                .bytes = radiance_.size() * sizeof(ColorD) + order_.bytes() + global_.bytes() +
-                                         caustic_.bytes()};
+        IntegratorReport report{
+            .photons_gathered = photons_gathered_,
+            .bytes = radiance_.size() * sizeof(ColorD) + order_.bytes() + global_.bytes() + caustic_.bytes()};
         set_radii(
             report, global_.radii.size(), [&](std::size_t i) { return global_.radii[i]; }, context_.scene.unit_length);
         return report;
@@ -143,6 +144,8 @@ private:
 
 IntegratorKind photonmapper_kind() {
     return {.name = "photonmapper",
+            .label = "PM",
+            .paper = "Jensen 1996, directly visualised",
             .needs = [](const MethodSettings&) { return Needs{.photons = Needs::Photons::OfAllPasses}; },
             .settings = {"mode", "k", "radius", "footprints", "max_radius", "caustic_k", "caustic_radius",
                          "caustic_max_radius", "kernel", "eps", "direct", "direct_samples", "max_depth",

@@ -120,6 +120,8 @@ private:
 
 IntegratorKind ppm_kind() {
     return {.name = "ppm",
+            .label = "PPM",
+            .paper = "Hachisuka, Ogaki and Jensen 2008; Knaus and Zwicker 2011",
             .needs =
                 [](const MethodSettings& settings) {
                     return Needs{.photons = Needs::Photons::OfPass,

@@ -15,6 +15,8 @@ namespace photonlab {
 
 struct IntegratorKind {
     std::string_view name;
+    std::string_view label;  ///< how figures name it
+    std::string_view paper;  ///< that it follows
     Needs (*needs)(const MethodSettings&);
     std::vector<std::string_view> settings;  ///< fields of MethodSettings that it uses, by their names
     std::unique_ptr<Integrator> (*make)(const MethodSettings&, const IntegratorContext&);
@@ -39,10 +41,14 @@ Needs needs_of(const MethodSettings& settings);
 /// mode "nearest", direct_samples only with direct "sampled", ...).
 bool uses_setting(const MethodSettings& settings, std::string_view field);
 
+/// Names of the integrators that have the setting, in the order of the list.
+std::vector<std::string_view> users_of(std::string_view field);
+
 /// Throws InputError when a value is out of its range.
 void require_valid(const MethodSettings& settings);
 
-/// Throws InputError when a radius is out of what can be told in the scene.
+/// Throws InputError when a length is out of what float32 geometry can resolve in the scene: the image would merely be
+/// wrong.
 void require_resolvable(const MethodSettings& settings, const Scene& scene);
 
 /// Checks the settings and makes an integrator of the kind.

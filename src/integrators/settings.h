@@ -1,6 +1,6 @@
 // Every setting of a method that an experiment can choose or sweep. One flat aggregate, because it is one row of the
-// records: experiment files, command line, run.json and the CSV's columns all speak of these fields. Which integrator
-// uses which is in integrator_kinds() (registry.h); what it does not use stays empty in the records.
+// records. What each means and can be is its line in settings_table.h; which integrator uses which is in its kind
+// (registry.h), and what it does not use stays empty in the records.
 
 #pragma once
 
@@ -38,8 +38,8 @@ constexpr const auto& choice_names(DirectMode) {
     return direct_mode_names;
 }
 
-/// Largest radius of mode `nearest` in shares of the scene's bounding radius, unless given: Mitsuba 0.6's default for its
-/// global map.
+/// Largest radius of mode `nearest` in shares of the scene's bounding radius, unless given: Mitsuba 0.6's default for
+/// its global map.
 inline constexpr double default_max_radius_share = 0.05;
 
 /// Largest radius of the caustic map in shares of the global map's, unless given: the ratio of Mitsuba 0.6's defaults.
@@ -50,29 +50,24 @@ inline constexpr double largest_branch_cutoff = 1.0;
 inline constexpr int fewest_nearest = 2;  ///< the k-th photon sets the radius and carries no flux
 
 struct MethodSettings {
-    std::string integrator = "ppm";                   ///< a name of integrator_kinds()
-    GatherMode mode = GatherMode::Radius;             ///< photonmapper
-    ScheduleName schedule = ScheduleName::Hachisuka;  ///< ppm
-    double alpha = 0.7;                               ///< ppm: share of photons kept a pass, in (0, 1]
-    int k = 120;                                      ///< photonmapper, nearest: photons searched, >= 2
-    std::optional<double> radius = std::nullopt;      ///< initial (ppm) or fixed (photonmapper, radius) gather radius,
-                                                  ///< scene units, > 0; empty: the pixel's footprint times `footprints`
-    double footprints = 2.0;                              ///< radius in pixel footprints where `radius` is empty, > 0
-    std::optional<double> max_radius = std::nullopt;      ///< photonmapper, nearest: scene units, > 0; empty: 5% of the
-                                                          ///< scene's bounding radius
-    int caustic_k = 120;                                  ///< photonmapper, nearest: the same of the caustic map, >= 2
-    std::optional<double> caustic_radius = std::nullopt;  ///< photonmapper, radius: of the caustic map, scene units,
-                                                          ///< > 0; empty: as `radius`
-    std::optional<double> caustic_max_radius = std::nullopt;  ///< photonmapper, nearest: of the caustic map, scene
-                                                              ///< units, > 0; empty: a quarter of max_radius
-    Kernel kernel = Kernel::Disc;                             ///< ppm, photonmapper
-    double eps = 0.0;  ///< ppm, photonmapper: inexactness of the search for photons, >= 0; see PhotonMap
-    DirectMode direct = DirectMode::Sampled;       ///< ppm, photonmapper
-    int direct_samples = 1;                        ///< shadow rays a hit point and pass, >= 1
-    int max_depth = -1;                            ///< edges from camera to light; -1 is unlimited
-    double branch_cutoff = default_branch_cutoff;  ///< throughput below which camera paths end at mirrors and glass,
-                                                   ///< 1e-12 to 1; references are made with the default
-    std::uint64_t photons_per_pass = 100'000;      ///< paths emitted a pass
+    std::string integrator = "ppm";  ///< a name of integrator_kinds()
+    GatherMode mode = GatherMode::Radius;
+    ScheduleName schedule = ScheduleName::Hachisuka;
+    double alpha = 0.7;
+    int k = 120;
+    std::optional<double> radius = std::nullopt;  ///< scene units; empty: from `footprints`
+    double footprints = 2.0;
+    std::optional<double> max_radius = std::nullopt;  ///< scene units; empty: from default_max_radius_share
+    int caustic_k = 120;
+    std::optional<double> caustic_radius = std::nullopt;      ///< scene units; empty: as `radius`
+    std::optional<double> caustic_max_radius = std::nullopt;  ///< scene units; empty: from default_caustic_share
+    Kernel kernel = Kernel::Disc;
+    double eps = 0.0;
+    DirectMode direct = DirectMode::Sampled;
+    int direct_samples = 1;
+    int max_depth = -1;
+    double branch_cutoff = default_branch_cutoff;
+    std::uint64_t photons_per_pass = 100'000;
 };
 
 }  // namespace photonlab

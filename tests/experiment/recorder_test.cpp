@@ -2,6 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "core/csv.h"
+#include "experiment/kept_files.h"
+#include "integrators/settings_table.h"
 #include "test_folder.h"
 
 namespace photonlab {
@@ -28,7 +35,7 @@ std::string cell(const Record& record, const std::string& column) {
 TEST(Records, ColumnsAreThoseOfTheContract) {
     EXPECT_EQ(
         csv_header(),
-        "schema,experiment,run,scene,integrator,mode,schedule,alpha,k,radius_rule,footprints,radius_initial,max_radius,"
+        "schema,experiment,run,scene,integrator,mode,schedule,alpha,k,radius_rule,radius_initial,footprints,max_radius,"
         "caustic_k,"
         "caustic_radius,caustic_max_radius,kernel,eps,"
         "direct,direct_samples,max_depth,branch_cutoff,photons_per_pass,width,height,samples_per_pixel,hit_points,seed,"
@@ -90,12 +97,46 @@ TEST(Records, WhatDoesNotApplyIsEmpty) {
 TEST(Records, NumbersReadBackTheSame) {
     RunIdentity identity;
     RunState state;
-    ErrorMetrics errors;
-    errors.mse = 0.1 + 0.2;
-    errors.mse_unbiased = -1.0 / 3.0 * 1e-17;
+    const ErrorMetrics errors =
+        compare({ColorD(1.0), ColorD(0.1)},
+                {{ColorD(0.7), ColorD(0.2)}, {ColorD(0.6), ColorD(0.1)}, {ColorD(0.8), ColorD(0.3)}});
     const Record record{identity, state, "total", errors, 0, 1.0};
-    EXPECT_EQ(std::stod(cell(record, "mse")), errors.mse);
-    EXPECT_EQ(std::stod(cell(record, "mse_unbiased")), *errors.mse_unbiased);
+    for (const Metric& metric : metrics())
+        EXPECT_EQ(std::stod(cell(record, std::string(metric.name))), errors.of(metric.name)) << metric.name;
+}
+
+TEST(Columns, AreDescribedBesideTheRecords) {
+    const std::optional<Json> described = checked_json(columns_json());
+    ASSERT_TRUE(described);
+    std::string names;
+    std::map<std::string, Json> by_name;
+    for (const Json& column : described->at("columns")) {
+        const std::string name = column.at("name");
+        names += (names.empty() ? "" : ",") + name;
+        by_name[name] = column;
+        EXPECT_FALSE(column.at("meaning").get<std::string>().empty()) << name;
+    }
+    EXPECT_EQ(names, csv_header());
+    EXPECT_EQ(by_name["alpha"]["kind"], "setting");
+    EXPECT_EQ(by_name["alpha"]["label"], "α");
+    EXPECT_EQ(by_name["alpha"]["used_by"], Json::array({"ppm"}));
+    EXPECT_EQ(by_name["integrator"]["values"][0], Json::array({"photonmapper", "PM"}));
+    EXPECT_EQ(by_name["seconds"]["kind"], "time");
+    EXPECT_EQ(by_name["seed"]["kind"], "identity");
+    EXPECT_EQ(by_name["threads"]["kind"], "identity");
+    EXPECT_EQ(by_name["radius_initial"]["unit"], "scene units");
+    for (const Metric& metric : metrics()) EXPECT_EQ(by_name[std::string(metric.name)]["error"], true);
+}
+
+TEST(Columns, HaveTheSettingsThatMakeAMethod) {
+    for (const SettingField& field : setting_fields()) {
+        const auto is_of_it = [&](const Column& column) {
+            return column.name == field.name || column.name == std::string(field.name) + "_initial";
+        };
+        EXPECT_EQ(std::count_if(columns().begin(), columns().end(), is_of_it), 1) << field.name;
+    }
+    std::set<std::string> names;
+    for (const Column& column : columns()) EXPECT_TRUE(names.insert(column.name).second) << column.name << " twice";
 }
 
 TEST(Records, TextIsQuotedAsRfc4180Says) {
@@ -153,11 +194,11 @@ TEST(Judgement, GatheredIsJudgedWithDirectWhenPhotonsCarryIt) {
     reference.half_a = uniform_image(1.0f, 2.0f, 3.0f);
     reference.half_b = reference.half_a;
     const Image image = uniform_image(1.0f, 0.0f, 5.5f);
-    EXPECT_DOUBLE_EQ(judge(image, reference, "gathered", true)->mse, 0.25);
+    EXPECT_DOUBLE_EQ(judge(image, reference, "gathered", true)->of("mse").value(), 0.25);
     EXPECT_FALSE(judge(image, reference, "direct", true).has_value());
-    EXPECT_DOUBLE_EQ(judge(image, reference, "gathered", false)->mse, 6.25);
-    EXPECT_DOUBLE_EQ(judge(image, reference, "direct", false)->mse, 4.0);
-    EXPECT_DOUBLE_EQ(judge(image, reference, "total", true)->mse, 0.25);
+    EXPECT_DOUBLE_EQ(judge(image, reference, "gathered", false)->of("mse").value(), 6.25);
+    EXPECT_DOUBLE_EQ(judge(image, reference, "direct", false)->of("mse").value(), 4.0);
+    EXPECT_DOUBLE_EQ(judge(image, reference, "total", true)->of("mse").value(), 0.25);
 }
 
 TEST(Judgement, HalvesRemoveTheReferencesNoise) {
@@ -166,9 +207,9 @@ TEST(Judgement, HalvesRemoveTheReferencesNoise) {
     reference.half_b = uniform_image(0.0f, 0.0f, 2.0f);
     const auto errors = judge(uniform_image(0.0f, 0.0f, 3.5f), reference, "total", false);
     ASSERT_TRUE(errors.has_value());
-    EXPECT_DOUBLE_EQ(errors->mse, 0.25);
-    EXPECT_DOUBLE_EQ(errors->mse_unbiased.value(), -0.75);
-    EXPECT_DOUBLE_EQ(errors->reference_floor.value(), 1.0);
+    EXPECT_DOUBLE_EQ(errors->of("mse").value(), 0.25);
+    EXPECT_DOUBLE_EQ(errors->of("mse_unbiased").value(), -0.75);
+    EXPECT_DOUBLE_EQ(errors->of("reference_floor").value(), 1.0);
 }
 
 }  // namespace

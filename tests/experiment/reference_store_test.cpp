@@ -154,9 +154,9 @@ TEST_F(ReferenceStore, AnImageOfAnotherRendererServesAsAReference) {
         image.layers.push_back({std::string(name), std::vector<Color>(96, Color(0.25f))});
     const auto errors = judge(image, reference, "total", false);
     ASSERT_TRUE(errors.has_value());
-    EXPECT_DOUBLE_EQ(errors->rmse, 0.25);
-    EXPECT_FALSE(errors->mse_unbiased.has_value());
-    EXPECT_FALSE(errors->reference_floor.has_value());
+    EXPECT_DOUBLE_EQ(errors->of("rmse").value(), 0.25);
+    EXPECT_FALSE(errors->of("mse_unbiased"));
+    EXPECT_FALSE(errors->of("reference_floor"));
     EXPECT_FALSE(judge(image, reference, "gathered", false).has_value());
 
     ReferenceSubject larger = subject();
@@ -176,8 +176,9 @@ TEST_F(ReferenceStore, ThePictureAloneJudgesTheWholeImage) {
     EXPECT_EQ(picture.half_a.layers.size(), 1u);
     EXPECT_NEAR(*picture.floor_mse, *layers.floor_mse, 1e-5 * *layers.floor_mse);
     const Image& judged = layers.half_a;
-    EXPECT_NEAR(judge(judged, picture, "total", false)->mse, judge(judged, layers, "total", false)->mse,
-                1e-4 * judge(judged, layers, "total", false)->mse);
+    EXPECT_NEAR(judge(judged, picture, "total", false)->of("mse").value(),
+                judge(judged, layers, "total", false)->of("mse").value(),
+                1e-4 * judge(judged, layers, "total", false)->of("mse").value());
     EXPECT_FALSE(judge(judged, picture, "gathered", false).has_value());
     EXPECT_NE(message_of([&] {
                   add_reference_samples(scene_, settings(1), folder_ / "picture");

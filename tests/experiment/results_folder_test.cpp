@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "experiment/recorder.h"
+#include "core/csv.h"
+#include "experiment/columns.h"
 #include "test_folder.h"
 
 namespace photonlab {

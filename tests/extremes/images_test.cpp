@@ -79,8 +79,7 @@ TEST(ImageSize, OfOneRowOrColumnIsThatOfALargerImage) {
     const MethodSettings method{.radius = gather_radius, .photons_per_pass = 300};
     const Image square = render(build_scene(foot_seen_by(side, side, fov)), method, {.passes = 2}).image;
     const Image row = render(build_scene(foot_seen_by(side, 1, fov)), method, {.passes = 2}).image;
-    const Image column =
-        render(build_scene(foot_seen_by(1, side, fov_of_one(fov, side))), method, {.passes = 2}).image;
+    const Image column = render(build_scene(foot_seen_by(1, side, fov_of_one(fov, side))), method, {.passes = 2}).image;
     constexpr std::size_t middle = side / 2;
     for (std::size_t i = 0; i < side; i += 8) {
         expect_pixels_agree(row, i, square, middle * side + i, 2e-5, "row");
@@ -99,10 +98,10 @@ TEST(ImageSize, OfOnePixelIsStoredAndJudged) {
     ASSERT_EQ(read.layers.size(), 3u);
     for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(read.layers[i].pixels, image.layers[i].pixels);
     const ErrorMetrics errors = compare({ColorD(3.0)}, {{ColorD(1.0)}, {ColorD(0.0)}, {ColorD(2.0)}});
-    EXPECT_EQ(errors.mse, 4.0);
-    EXPECT_EQ(errors.mse_unbiased, 3.0);
-    EXPECT_EQ(errors.bias, 2.0);
-    EXPECT_EQ(errors.reference_floor, 1.0);
+    EXPECT_EQ(errors.of("mse").value(), 4.0);
+    EXPECT_EQ(errors.of("mse_unbiased").value(), 3.0);
+    EXPECT_EQ(errors.of("bias").value(), 2.0);
+    EXPECT_EQ(errors.of("reference_floor").value(), 1.0);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------

@@ -115,30 +115,6 @@ TEST(RunningMean, EqualsTheTextbookUpdateOverTenThousandRandomPasses) {
     }
 }
 
-TEST(RequireAlpha, AcceptsEverythingAboveZeroUpToOne) {
-    for (const double alpha : {std::numeric_limits<double>::denorm_min(), 1e-9, 0.3, 0.7, 1.0})
-        EXPECT_NO_THROW(require_alpha(alpha));
-}
-
-TEST(RequireAlpha, RefusesAnythingElseAndSaysWhatItGot) {
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    for (const double alpha : {0.0, -0.0, -0.5, 1.0000001, 2.0, std::numeric_limits<double>::infinity(), nan}) {
-        try {
-            require_alpha(alpha);
-            FAIL() << "expected an InputError for " << alpha;
-        } catch (const InputError& error) {
-            const std::string message = error.what();
-            EXPECT_NE(message.find("alpha: expected a number in (0, 1], got "), std::string::npos) << message;
-        }
-    }
-    try {
-        require_alpha(1.5);
-        FAIL() << "expected an InputError";
-    } catch (const InputError& error) {
-        EXPECT_STREQ(error.what(), "alpha: expected a number in (0, 1], got 1.5");
-    }
-}
-
 TEST(ScheduleName, ReadsBackAndRefusesUnknownOnes) {
     EXPECT_EQ(parse_choice<ScheduleName>("schedule", "hachisuka"), ScheduleName::Hachisuka);
     EXPECT_EQ(parse_choice<ScheduleName>("schedule", "knaus-zwicker"), ScheduleName::KnausZwicker);

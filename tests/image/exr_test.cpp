@@ -169,7 +169,7 @@ TEST(Exr, ValuesThatAreNotFiniteAreWrittenAndThenCountedByCompare) {
                                          {.mean = std::vector<ColorD>(3, ColorD(1.0)), .half_a = {}, .half_b = {}});
     EXPECT_EQ(metrics.nonfinite, 2u);
     EXPECT_EQ(metrics.first_nonfinite, 1u);
-    EXPECT_EQ(metrics.mse, 0.0);
+    EXPECT_EQ(metrics.of("mse").value(), 0.0);
 }
 
 TEST(Exr, OtherProgramsSeeTheSumOfTheLayersInRgb) {

@@ -61,9 +61,9 @@ struct Experiment {
             for (std::size_t i = 0; i < pixels; ++i)
                 reference.mean.push_back((reference.half_a[i] + reference.half_b[i]) * 0.5);
             const ErrorMetrics metrics = compare(image, reference);
-            mse.push_back(metrics.mse);
-            mse_unbiased.push_back(metrics.mse_unbiased.value());
-            reference_floor.push_back(metrics.reference_floor.value());
+            mse.push_back(metrics.of("mse").value());
+            mse_unbiased.push_back(metrics.of("mse_unbiased").value());
+            reference_floor.push_back(metrics.of("reference_floor").value());
         }
     }
 };

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/files.h"
-#include "experiment/settings_io.h"
+#include "experiment/json.h"
 #include "image/exr.h"
 
 namespace photonlab {

@@ -1,0 +1,308 @@
+#include "integrators/settings_table.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "core/number_in.h"
+
+namespace photonlab {
+
+namespace {
+
+using Type = SettingField::Type;
+
+[[noreturn]] void refuse(std::string_view name, std::string_view expected, const SettingValue& value) {
+    throw InputError(fmt::format("{}: expected {}, got {}", name, expected, describe(value)));
+}
+
+// Reading and writing a value, by the type of its field.
+
+SettingValue write_value(const std::string& value) {
+    return value;
+}
+SettingValue write_value(double value) {
+    return value;
+}
+SettingValue write_value(int value) {
+    return std::int64_t{value};
+}
+SettingValue write_value(std::uint64_t value) {
+    return static_cast<std::int64_t>(value);
+}
+SettingValue write_value(const std::optional<double>& value) {
+    return value ? SettingValue(*value) : SettingValue("auto");
+}
+template <typename Enumeration>
+requires std::is_enum_v<Enumeration> SettingValue write_value(Enumeration value) {
+    return name_of(value);
+}
+
+void read_value(std::string_view name, std::string& target, const SettingValue& value) {
+    const auto* text = std::get_if<std::string>(&value);
+    if (!text) refuse(name, "a name", value);
+    target = *text;
+}
+
+void read_value(std::string_view name, double& target, const SettingValue& value) {
+    if (const auto* number = std::get_if<double>(&value))
+        target = *number;
+    else if (const auto* integer = std::get_if<std::int64_t>(&value))
+        target = static_cast<double>(*integer);
+    else
+        refuse(name, "a number", value);
+}
+
+void read_value(std::string_view name, std::optional<double>& target, const SettingValue& value) {
+    const auto* text = std::get_if<std::string>(&value);
+    if (text && *text == "auto") {
+        target.reset();
+        return;
+    }
+    if (text || std::holds_alternative<bool>(value)) refuse(name, "\"auto\" or a length in scene units", value);
+    double length = 0.0;
+    read_value(name, length, value);
+    target = length;
+}
+
+/// Whole numbers may be written as 1e6.
+std::int64_t whole_number(std::string_view name, const SettingValue& value) {
+    if (const auto* integer = std::get_if<std::int64_t>(&value)) return *integer;
+    const auto* number = std::get_if<double>(&value);
+    if (!number || std::abs(*number) >= 0x1p53 || *number != std::trunc(*number)) refuse(name, "a whole number", value);
+    return static_cast<std::int64_t>(*number);
+}
+
+void read_value(std::string_view name, int& target, const SettingValue& value) {
+    const std::int64_t number = whole_number(name, value);
+    if (number < std::numeric_limits<int>::min() || number > std::numeric_limits<int>::max())
+        refuse(name, "a whole number of 32 bits", value);
+    target = static_cast<int>(number);
+}
+
+void read_value(std::string_view name, std::uint64_t& target, const SettingValue& value) {
+    const std::int64_t number = whole_number(name, value);
+    if (number < 0) refuse(name, "a whole number of at least 0", value);
+    target = static_cast<std::uint64_t>(number);
+}
+
+template <typename Enumeration>
+requires std::is_enum_v<Enumeration>
+void read_value(std::string_view name, Enumeration& target, const SettingValue& value) {
+    const auto* text = std::get_if<std::string>(&value);
+    if (!text) refuse(name, fmt::format("one of {}", fmt::join(all_names<Enumeration>(), ", ")), value);
+    target = parse_choice<Enumeration>(name, *text);
+}
+
+template <typename Value>
+constexpr Type type_of() {
+    if constexpr (std::is_integral_v<Value>) return Type::Integer;
+    if constexpr (std::is_same_v<Value, double>) return Type::Number;
+    if constexpr (std::is_same_v<Value, std::optional<double>>) return Type::Length;
+    return Type::Text;
+}
+
+/// A line of the table, with what follows from the type of the field.
+template <auto Member>
+SettingField line(SettingField field) {
+    using Value = std::remove_cvref_t<decltype(std::declval<MethodSettings>().*Member)>;
+    field.type = type_of<Value>();
+    if constexpr (std::is_enum_v<Value>) field.choices = all_names<Value>();
+    field.get = [](const MethodSettings& settings) { return write_value(settings.*Member); };
+    field.set = [](const SettingField& self, MethodSettings& settings, const SettingValue& value) {
+        read_value(self.name, settings.*Member, value);
+    };
+    return field;
+}
+
+bool in_mode_nearest(const MethodSettings& settings) {
+    return settings.mode == GatherMode::Nearest;
+}
+bool in_mode_radius(const MethodSettings& settings) {
+    return settings.mode == GatherMode::Radius;
+}
+
+constexpr Range at_least(double least) {
+    return {.least = least};
+}
+constexpr Range above(double least) {
+    return {.least = least, .has_least = false};
+}
+
+}  // namespace
+
+const std::vector<SettingField>& setting_fields() {
+    using Settings = MethodSettings;
+    static const std::vector<SettingField> fields{
+        line<&Settings::integrator>({.name = "integrator", .option = "--integrator", .meaning = "name of the method"}),
+        line<&Settings::mode>({.name = "mode",
+                               .option = "--mode",
+                               .meaning = "which photons are gathered: all within a fixed radius, or the nearest"}),
+        line<&Settings::schedule>({.name = "schedule",
+                                   .option = "--schedule",
+                                   .meaning = "how radii shrink from pass to pass; the same alpha means something else "
+                                              "in each"}),
+        line<&Settings::alpha>({.name = "alpha",
+                                .option = "--alpha",
+                                .label = "α",
+                                .meaning = "share of photons kept a pass",
+                                .range = Range{.least = 0.0, .most = 1.0, .has_least = false}}),
+        line<&Settings::k>(
+            {.name = "k",
+             .option = "--k",
+             .unit = "photons",
+             .label = "k",
+             .meaning = "photons searched, of mode nearest; the k-th sets the radius and carries no flux",
+             .range = at_least(fewest_nearest),
+             .applies = in_mode_nearest}),
+        line<&Settings::radius>({.name = "radius",
+                                 .option = "--radius",
+                                 .unit = "scene units",
+                                 .label = "radius",
+                                 .meaning = "initial or fixed gather radius; auto is the pixel's footprint at each hit "
+                                            "point times `footprints`",
+                                 .applies = in_mode_radius}),
+        line<&Settings::footprints>(
+            {.name = "footprints",
+             .option = "--footprints",
+             .unit = "pixel footprints",
+             .label = "radius in footprints",
+             .meaning = "the automatic radius",
+             .range = above(0.0),
+             .applies = [](const Settings& settings) { return in_mode_radius(settings) && !settings.radius; }}),
+        line<&Settings::max_radius>({.name = "max_radius",
+                                     .option = "--max-radius",
+                                     .unit = "scene units",
+                                     .label = "maximum radius",
+                                     .meaning = "largest radius of mode nearest; auto is 5% of the scene's bounding "
+                                                "radius",
+                                     .applies = in_mode_nearest}),
+        line<&Settings::caustic_k>({.name = "caustic_k",
+                                    .option = "--caustic-k",
+                                    .unit = "photons",
+                                    .label = "caustic k",
+                                    .meaning = "`k` of the caustic map, which holds the photons that came from the "
+                                               "light by mirrors and glass alone",
+                                    .range = at_least(fewest_nearest),
+                                    .applies = in_mode_nearest}),
+        line<&Settings::caustic_radius>({.name = "caustic_radius",
+                                         .option = "--caustic-radius",
+                                         .unit = "scene units",
+                                         .label = "caustic radius",
+                                         .meaning = "radius in the caustic map; auto is `radius`",
+                                         .applies = in_mode_radius}),
+        line<&Settings::caustic_max_radius>({.name = "caustic_max_radius",
+                                             .option = "--caustic-max-radius",
+                                             .unit = "scene units",
+                                             .label = "maximum caustic radius",
+                                             .meaning = "largest radius in the caustic map; auto is a quarter of "
+                                                        "`max_radius`",
+                                             .applies = in_mode_nearest}),
+        line<&Settings::kernel>(
+            {.name = "kernel", .option = "--kernel", .meaning = "weight of a photon by its distance"}),
+        line<&Settings::eps>({.name = "eps",
+                              .option = "--eps",
+                              .label = "eps",
+                              .meaning = "inexactness of the search for photons, as FLANN means it: a group of photons "
+                                         "is looked at when its squared distance times 1 + eps is within the squared "
+                                         "radius; 0 is exact",
+                              .range = at_least(0.0)}),
+        line<&Settings::direct>({.name = "direct",
+                                 .option = "--direct",
+                                 .label = "direct",
+                                 .meaning = "direct light from shadow rays (sampled) or carried by photons"}),
+        line<&Settings::direct_samples>(
+            {.name = "direct_samples",
+             .option = "--direct-samples",
+             .unit = "rays",
+             .label = "direct samples",
+             .meaning = "shadow rays a hit point and pass",
+             .range = at_least(1),
+             .applies = [](const Settings& settings) { return settings.direct == DirectMode::Sampled; }}),
+        line<&Settings::max_depth>(
+            {.name = "max_depth",
+             .option = "--max-depth",
+             .unit = "edges",
+             .label = "max depth",
+             .meaning = "edges from camera to light, as in Mitsuba: 2 is direct light, -1 is unlimited",
+             .range = Range{.least = 1, .also = "-1 (unlimited)", .other = -1},
+             .default_words = "the scene file's"}),
+        line<&Settings::branch_cutoff>(
+            {.name = "branch_cutoff",
+             .option = "--branch-cutoff",
+             .label = "branch cut-off",
+             .meaning = "throughput below which camera paths end at mirrors and glass; references are made with the "
+                        "default",
+             .range = Range{.least = smallest_branch_cutoff, .most = largest_branch_cutoff}}),
+        line<&Settings::photons_per_pass>({.name = "photons_per_pass",
+                                           .option = "--photons",
+                                           .unit = "paths",
+                                           .label = "photons a pass",
+                                           .meaning = "light paths emitted a pass, whatever they store",
+                                           .range = Range{.least = 1, .most = 0x1p32}}),
+    };
+    return fields;
+}
+
+const SettingField* find_setting_field(std::string_view name) {
+    for (const SettingField& field : setting_fields())
+        if (field.name == name) return &field;
+    return nullptr;
+}
+
+SettingValue parse_setting_value(std::string_view text) {
+    if (const auto integer = number_in<std::int64_t>(text)) return *integer;
+    if (const auto number = number_in<double>(text)) return *number;
+    return std::string(text);
+}
+
+std::string describe(const SettingValue& value) {
+    const auto* text = std::get_if<std::string>(&value);
+    return text ? '"' + *text + '"' : plain_text(value);
+}
+
+std::string plain_text(const SettingValue& value) {
+    if (const auto* text = std::get_if<std::string>(&value)) return *text;
+    if (const auto* integer = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *integer);
+    if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+    return std::get<bool>(value) ? "true" : "false";
+}
+
+bool Range::holds(double number) const {
+    return number == other || (number <= most && (has_least ? number >= least : number > least));
+}
+
+std::string describe(const Range& range) {
+    const std::string also = range.also.empty() ? "" : std::string(range.also) + " or ";
+    const bool has_most = range.most < std::numeric_limits<double>::max();
+    const auto number = [](double value) {
+        return value == std::trunc(value) && std::abs(value) < 0x1p53 ? fmt::format("{:.0f}", value)
+                                                                      : fmt::format("{:g}", value);
+    };
+    if (!has_most) return also + (range.has_least ? "at least " : "a number above ") + number(range.least);
+    if (range.has_least) return fmt::format("{}from {} to {}", also, number(range.least), number(range.most));
+    return fmt::format("{}a number in ({}, {}]", also, number(range.least), number(range.most));
+}
+
+std::string default_of(const SettingField& field) {
+    return field.default_words.empty() ? plain_text(field.get(MethodSettings{})) : std::string(field.default_words);
+}
+
+std::string describe_values(const SettingField& field) {
+    if (field.type == Type::Length) return "\"auto\" or a length above 0 in scene units";
+    if (field.range) return describe(*field.range);
+    return fmt::format("{}", fmt::join(field.choices, ", "));
+}
+
+void require_in_range(const SettingField& field, const MethodSettings& settings) {
+    const SettingValue value = field.get(settings);
+    const auto* integer = std::get_if<std::int64_t>(&value);
+    const auto* number = std::get_if<double>(&value);
+    if (!integer && !number) return;
+    const Range range = field.type == Type::Length ? above(0.0) : field.range.value_or(Range{});
+    if (!range.holds(integer ? static_cast<double>(*integer) : *number))
+        throw InputError(fmt::format("{}: expected {}, got {}", field.name, describe_values(field), describe(value)));
+}
+
+}  // namespace photonlab
