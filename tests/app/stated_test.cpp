@@ -1,5 +1,5 @@
-// What README.md and --help state, compared with the code: names, defaults, limits and constants. A sentence that holds
-// a number is written here with the constant in its place, so that neither can change alone.
+// What the manual and --help state, compared with the code: names, defaults, limits and constants. A sentence that
+// holds a number is written here with the constant in its place, so that neither can change alone.
 
 #include <fmt/format.h>
 
@@ -23,6 +23,7 @@
 #include "integrators/settings_table.h"
 #include "scene/narrow_gaps.h"
 #include "tests/app/program.h"
+#include "tests/support/manual_tables.h"
 
 namespace photonlab {
 namespace {
@@ -110,16 +111,16 @@ protected:
     }
 
     void expect_stated(const std::string& sentence) const {
-        EXPECT_NE(readme_.find(sentence), std::string::npos) << "README.md does not say: " << sentence;
+        EXPECT_NE(manual_.find(sentence), std::string::npos) << "docs/manual.md does not say: " << sentence;
     }
 
     const TestFolder folder_;
-    const std::string readme_ = read_text_file(source / "README.md");
+    const std::string manual_ = read_text_file(source / "docs/manual.md");
 };
 
 TEST_F(Stated, CommandsAreThoseOfTheProgram) {
-    Names in_readme;
-    for (const Row& row : table(readme_, "command")) in_readme.insert(split(quoted(row.at(0)).at(0), " ").at(1));
+    Names in_manual;
+    for (const Row& row : table(manual_, "command")) in_manual.insert(split(quoted(row.at(0)).at(0), " ").at(1));
     Names in_help;
     bool is_in_list = false;
     for (const std::string& line : lines_of(help_of({}))) {
@@ -128,93 +129,25 @@ TEST_F(Stated, CommandsAreThoseOfTheProgram) {
         if (line.rfind("Subcommands:", 0) == 0) is_in_list = true;
     }
     EXPECT_FALSE(in_help.empty());
-    EXPECT_EQ(in_readme, in_help);
+    EXPECT_EQ(in_manual, in_help);
 }
 
-TEST_F(Stated, SettingsAndTheirDefaultsAreThoseOfTheTable) {
-    std::map<std::string, std::string> stated;  // default by name
-    for (const Row& row : table(readme_, "setting")) {
-        const std::vector<std::string> names = quoted(row.at(0));
-        const std::vector<std::string> defaults = split(row.at(2), ", ");
-        ASSERT_EQ(names.size(), defaults.size()) << row.at(0);
-        for (std::size_t i = 0; i < names.size(); ++i)
-            stated[names[i]] = std::regex_replace(defaults[i], std::regex("`"), "");
-    }
-    Names of_methods{"integrator"};
-    for (const Row& row : table(readme_, "integrator"))
-        for (const std::string& name : quoted(row.at(2)))
-            if (find_setting_field(name)) of_methods.insert(name);
-    const MethodSettings defaults;
-    for (const SettingField& field : setting_fields()) {
-        const std::string name(field.name);
-        const auto at = stated.find(name);
-        if (at == stated.end()) {
-            EXPECT_TRUE(of_methods.contains(name)) << name;
-            continue;
-        }
-        const std::string expected = plain_text(field.get(defaults));
-        if (name == "max_depth")
-            EXPECT_EQ(at->second, "the scene's");
-        else if (expected.find_first_not_of("0123456789.e+-") == std::string::npos)
-            EXPECT_EQ(std::stod(at->second), std::stod(expected)) << name;
-        else
-            EXPECT_EQ(at->second, expected) << name;
-        stated.erase(at);
-    }
-    EXPECT_TRUE(stated.empty()) << "no setting: " << stated.begin()->first;
-    expect_stated(fmt::format("`alpha` ({}), `schedule`", defaults.alpha));
+TEST_F(Stated, TablesOfTheManualAreThoseOfTheProgram) {
+    EXPECT_EQ(with_tables(manual_), manual_) << "cmake --build --preset release --target manual";
 }
 
-TEST_F(Stated, IntegratorsAndChoicesAreThoseOfTheRegistry) {
-    Names integrators;
-    for (const Row& row : table(readme_, "integrator")) integrators.insert(quoted(row.at(0)).at(0));
-    Names known;
-    for (const IntegratorKind& kind : integrator_kinds()) known.insert(std::string(kind.name));
-    EXPECT_EQ(integrators, known);
-    const auto choices = [](const auto& names, const std::string& separator, const std::string& last) {
-        std::string text;
-        for (std::size_t i = 0; i < names.size(); ++i)
-            text += (i == 0 ? "" : i + 1 == names.size() ? last : separator) + "`" + std::string(names[i].name) + "`";
-        return text;
-    };
-    expect_stated("| " + choices(kernel_names, ", ", " or ") + " |");
-    expect_stated("`schedule` (" + choices(schedule_names, ", ", " or ") + ")");
-    for (const auto& mode : gather_mode_names) expect_stated(fmt::format("`{}` (", mode.name));
-    for (const auto& direct : direct_mode_names) expect_stated(fmt::format("`direct = \"{}\"`", direct.name));
-}
-
-TEST_F(Stated, NumbersInTheMeaningOfSettingsAreTheConstants) {
-    const auto meaning = [](std::string_view name) { return std::string(find_setting_field(name)->meaning); };
-    const auto expect_in = [](const std::string& text, const std::string& part) {
+TEST_F(Stated, NumbersInTheMeaningOfSettingsAndMetricsAreTheConstants) {
+    const auto expect_in = [](std::string_view text, const std::string& part) {
         EXPECT_NE(text.find(part), std::string::npos) << text << "\nlacks: " << part;
     };
-    const std::string share = fmt::format("{:g}% of the scene's bounding radius", 100.0 * default_max_radius_share);
-    expect_in(meaning("max_radius"), share);
-    expect_stated("`auto` is " + share);
+    const auto meaning = [](std::string_view name) { return find_setting_field(name)->meaning; };
+    expect_in(meaning("max_radius"),
+              fmt::format("{:g}% of the scene's bounding radius", 100.0 * default_max_radius_share));
     ASSERT_EQ(default_caustic_share, 0.25);
     expect_in(meaning("caustic_max_radius"), "a quarter of `max_radius`");
-    expect_stated("a quarter of `max_radius`");
-    const std::string cutoffs = fmt::format("{:g} to {:g}", smallest_branch_cutoff, largest_branch_cutoff);
-    expect_stated(cutoffs + ". References are made with 1e-4");
-    EXPECT_EQ(default_branch_cutoff, 1e-4);
+    for (const Metric& metric : metrics())
+        if (metric.name == "smape") expect_in(metric.meaning, fmt::format("|r| + {})", written(smape_epsilon)));
     expect_stated(fmt::format("refused below {} |", fewest_nearest));
-    // Both say of eps what PhotonMap does with it.
-    for (const std::string& text : {meaning("eps"), readme_})
-        expect_in(text, "is looked at when its squared distance times 1 + eps is within the squared radius");
-}
-
-TEST_F(Stated, ColumnsAreThoseOfTheRecords) {
-    std::multiset<std::string> in_readme;
-    for (const Row& row : table(readme_, "column"))
-        for (const std::string& name : quoted(row.at(0))) in_readme.insert(name);
-    std::multiset<std::string> in_header;
-    for (const std::string& name : split(csv_header(), ",")) in_header.insert(name);
-    EXPECT_EQ(in_readme, in_header);
-    std::string stated_components;
-    for (std::size_t i = 0; i < components.size(); ++i)
-        stated_components += (i == 0 ? "" : i + 1 == components.size() ? " or " : ", ") + ("`" + components[i] + "`");
-    expect_stated("| `component` | | " + stated_components);
-    expect_stated(fmt::format("(\\|x\\| + \\|r\\| + {})", written(smape_epsilon)));
 }
 
 TEST_F(Stated, ConstantsInSentences) {
@@ -273,9 +206,9 @@ Names known_in(const std::string& message) {
 }
 
 TEST_F(Stated, PluginsAreThoseThatScenesMayHave) {
-    const std::size_t begin = readme_.find("Mitsuba XML, in the names of version 3");
+    const std::size_t begin = manual_.find("Mitsuba XML, in the names of version 3");
     ASSERT_NE(begin, std::string::npos);
-    const std::string paragraph = readme_.substr(begin, readme_.find("\n", begin) - begin);
+    const std::string paragraph = manual_.substr(begin, manual_.find("\n", begin) - begin);
     // "shapes `a`, `b`; materials `c`": what is quoted before the next kind begins.
     const auto stated = [&](const std::string& kind, const std::string& next) {
         const std::size_t from = paragraph.find(kind + " `");
@@ -300,7 +233,7 @@ TEST_F(Stated, PluginsAreThoseThatScenesMayHave) {
 
 TEST_F(Stated, ScenesAndTheirReferencesAreThoseInTheRepository) {
     Names scenes;
-    for (const Row& row : table(readme_, "scene")) {
+    for (const Row& row : table(manual_, "scene")) {
         const std::string name = quoted(row.at(0)).at(0);
         scenes.insert(name);
         if (!std::filesystem::exists(source / "reference" / name)) {
@@ -315,8 +248,9 @@ TEST_F(Stated, ScenesAndTheirReferencesAreThoseInTheRepository) {
 }
 
 TEST_F(Stated, ExperimentsAreThoseInTheRepository) {
-    Names stated{"demo", "gallery"};  // at the top
-    for (const Row& row : table(readme_, "experiment"))
+    const std::string page = read_text_file(source / "docs/experiments.md");
+    Names stated{"demo", "gallery"};  // without a question of their own
+    for (const Row& row : table(page, "experiment"))
         for (const std::string& name : quoted(row.at(0))) stated.insert(name);
     Names files;
     for (const auto& entry : std::filesystem::directory_iterator(source / "experiments"))
@@ -326,9 +260,9 @@ TEST_F(Stated, ExperimentsAreThoseInTheRepository) {
 }
 
 TEST_F(Stated, RoomsAreThoseOfTheSources) {
-    const std::size_t begin = readme_.find("`src/` has one folder a room");
+    const std::size_t begin = manual_.find("`src/` has one folder a room");
     ASSERT_NE(begin, std::string::npos);
-    std::vector<std::string> rooms = quoted(readme_.substr(begin, readme_.find(". `tests/`", begin) - begin));
+    std::vector<std::string> rooms = quoted(manual_.substr(begin, manual_.find(". `tests/`", begin) - begin));
     rooms.erase(rooms.begin());
     EXPECT_EQ(Names(rooms.begin(), rooms.end()), folders_in(source / "src"));
 }
