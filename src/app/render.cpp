@@ -15,22 +15,19 @@
 #include "app/options.h"
 #include "core/file_lock.h"
 #include "core/files.h"
-#include "core/hash.h"
 #include "core/messages.h"
 #include "core/text.h"
-#include "experiment/checkpoint.h"
+#include "experiment/columns.h"
 #include "experiment/experiment_file.h"
+#include "experiment/experiment_plan.h"
 #include "experiment/memory.h"
 #include "experiment/progress.h"
-#include "experiment/recorder.h"
 #include "experiment/reference.h"
-#include "experiment/run_record.h"
-#include "experiment/version.h"
+#include "experiment/run_group.h"
 #include "image/exr.h"
 #include "image/image_codecs.h"
 #include "image/png.h"
 #include "integrators/registry.h"
-#include "render/run_methods.h"
 #include "scene/loader.h"
 #include "transport/plain_images.h"
 
@@ -55,28 +52,6 @@ struct RenderOptions {
     double checkpoint_seconds = default_seconds_between_saves;
     bool resume = false;
 };
-
-/// Where the render's state is kept, with what tells it from others.
-Checkpoint checkpoint_of(const RenderOptions& options, const RunIdentity& identity, const Scene& scene,
-                         const Reference* reference, const std::vector<std::uint64_t>& recorded) {
-    const RunSettings& settings = identity.settings;
-    return {options.checkpoint,
-            hash_text(Json{{"command", "render"},
-                           {"program", program_version().version},
-                           {"settings", settings_json(settings.method)},
-                           {"seed", settings.seed},
-                           {"passes", settings.passes},
-                           {"shown", settings.shown},
-                           {"recorded", recorded},
-                           {"csv", !options.csv.empty()},
-                           {"width", identity.width},
-                           {"height", identity.height},
-                           {"samples_per_pixel", identity.samples_per_pixel},
-                           {"scene", scene.hash},
-                           {"reference", reference ? reference->key : ""}}
-                          .dump()),
-            "remove it, or begin anew beside it with another --checkpoint"};
-}
 
 std::filesystem::path snapshot_file(const std::filesystem::path& output, std::uint64_t pass) {
     return output.parent_path() / fmt::format("{}-pass-{}.exr", output.stem().string(), pass);
@@ -180,134 +155,137 @@ void require_sound_outputs(const RenderOptions& options, const std::vector<std::
     }
 }
 
-void render(const RenderOptions& options) {
-    require_consistent(options);
-    const ChosenSettings chosen = options.method.settings();
-    check_options([&] { require_perfect_square(options.samples_per_pixel); });
+/// The passes whose image is wanted, in order.
+std::vector<std::uint64_t> snapshots_of(const RenderOptions& options) {
     std::vector<std::uint64_t> snapshots = options.snapshots;
     std::sort(snapshots.begin(), snapshots.end());
     snapshots.erase(std::unique(snapshots.begin(), snapshots.end()), snapshots.end());
     if (!snapshots.empty() && snapshots.back() > options.passes)
         throw InputError(fmt::format("--snapshots: pass {} is beyond the last, {}", snapshots.back(), options.passes));
-    std::optional<Resolution> resolution;
-    if (!options.resolution.empty()) resolution = parse_resolution(options.resolution);
+    return snapshots;
+}
 
-    start_threads(options.threads);
-    const Scene scene = build_scene(load_scene_file(options.scene), resolution);
-    RunSettings settings{resolve(chosen, scene.max_depth), options.seed, options.passes, options.threads, {}};
-    check_options([&] { require_resolvable(settings.method, scene); });
-    std::optional<Reference> reference;
-    if (!options.reference.empty())
-        reference =
-            load_reference(options.reference, ReferenceSubject{scene.hash, scene.camera.width, scene.camera.height,
-                                                               options.samples_per_pixel, settings.method.max_depth});
+/// The experiment of one run that a render is.
+Experiment experiment_of(const RenderOptions& options, const ChosenSettings& settings, const Scene& scene,
+                         const std::vector<std::uint64_t>& snapshots) {
+    ExperimentRun run{.name = "render", .point = "render", .method = settings.values.integrator, .settings = settings};
+    run.plan = {options.passes, options.csv.empty() ? std::vector{options.passes} : powers_of_two(options.passes),
+                snapshots};
+    if (snapshots.empty() || snapshots.back() != options.passes) run.plan.snapshots.push_back(options.passes);
+    run.seed = options.seed;
 
+    Experiment experiment{.file = options.scene, .name = "render", .title = "render"};
+    experiment.scenes = {{.file = options.scene, .name = valid_text(scene.name)}};
+    experiment.runs = {std::move(run)};
+    experiment.samples_per_pixel = options.samples_per_pixel;
+    experiment.threads = options.threads;
+    return experiment;
+}
+
+/// Before hours are spent: everything that is to be written can be.
+void require_room_for(const RenderOptions& options, const std::vector<std::uint64_t>& snapshots, const Scene& scene) {
     require_sound_outputs(options, snapshots);
-    // Before hours are spent: everything that is to be written can be.
-    require_writable(options.output);
-    for (const std::string& file : {options.csv, options.png, options.checkpoint})
-        if (!file.empty()) require_writable(file);
-    if (!options.csv.empty()) require_writable(columns_file(options.csv));
-    if (!snapshots.empty()) require_writable(snapshot_file(options.output, snapshots.back()));  // the longest name
+    for (const WrittenFile& written : written_files(options, snapshots)) require_writable(written.file);
     if (!options.png.empty()) image_codecs();  // so large that there may be no room for them in memory
-
     const auto pixels =
         static_cast<std::uint64_t>(scene.camera.width) * static_cast<std::uint64_t>(scene.camera.height);
     require_space(options.output.parent_path(), 4 * sizeof(Color) * pixels * (1 + snapshots.size()),
                   "what this render writes");
+}
 
-    const std::vector<std::uint64_t> recorded =
-        options.csv.empty() ? std::vector{options.passes} : powers_of_two(options.passes);
-    std::set_union(recorded.begin(), recorded.end(), snapshots.begin(), snapshots.end(),
-                   std::back_inserter(settings.shown));
-
-    const MemoryEstimate memory = MemoryEstimator(scene, options.samples_per_pixel).of({settings}, 0);
-    require_memory(options.scene.string(), memory);
-    print_output("memory      {}\n", describe(memory));
-
-    const HitPoints hit_points =
-        trace_hit_points(scene, options.samples_per_pixel, options.threads, settings.method.branch_cutoff);
-    const RunIdentity identity{"render",
-                               "render",
-                               valid_text(scene.name),
-                               settings,
-                               scene.camera.width,
-                               scene.camera.height,
-                               options.samples_per_pixel,
-                               hit_points.points.size()};
-    const Reference* judge_by = reference ? &*reference : nullptr;
-    std::optional<Recorder> recorder;
-    if (!options.csv.empty()) recorder.emplace(identity, judge_by, options.csv);
-
-    const auto lock = options.checkpoint.empty() ? std::nullopt : FileLock::try_lock(options.checkpoint + ".lock");
-    if (!options.checkpoint.empty() && !lock)
-        throw InputError(options.checkpoint, "another process is rendering with this checkpoint");
-    const Checkpoint checkpoint = checkpoint_of(options, identity, scene, judge_by, recorded);
-    const auto state_of = [&](const StateExchange& method) {
-        return [&](StateArchive& archive) {
-            method(archive);
-            if (recorder) recorder->exchange(archive);
-        };
+RunFiles files_of(const RenderOptions& options, const std::string& key) {
+    RunFiles files;
+    files.rows = options.csv;
+    files.snapshot = [&options](std::uint64_t pass) {
+        return pass == options.passes ? options.output : snapshot_file(options.output, pass);
     };
-    Continuation continuation;
-    if (options.resume)
-        continuation.restore = [&](std::size_t, const StateExchange& method) {
-            if (!load(checkpoint, state_of(method)))
-                print_message("photonlab: {} is not there: beginning at pass 1\n", options.checkpoint);
-        };
-    CheckpointClock clock(options.checkpoint_seconds);
-    continuation.goes_on = [&](std::uint64_t pass, const std::vector<StateExchange>& methods) {
-        const bool is_due = clock.is_due_after_pass();
-        if (pass == options.passes || (!is_due && !is_interrupted())) return true;
-        if (!options.checkpoint.empty()) {
-            save(checkpoint, state_of(methods[0]));
-            clock.saved();
-        }
-        return !is_interrupted();
-    };
+    files.checkpoint = {options.checkpoint, key + (options.csv.empty() ? "" : ", with rows"),
+                        "remove it, or begin anew beside it with another --checkpoint"};
+    return files;
+}
 
+/// What follows from the last image: a copy of it where its pass is a snapshot, too, and the picture.
+void write_rest(const RenderOptions& options, const std::vector<std::uint64_t>& snapshots) {
+    if (!snapshots.empty() && snapshots.back() == options.passes)
+        write_text_file(snapshot_file(options.output, options.passes), read_text_file(options.output));
+    if (!options.png.empty()) {
+        const Image image = read_exr(options.output);
+        write_png(options.png, image.width, image.height, total(image));
+    }
+    if (!options.csv.empty()) write_columns(columns_file(options.csv));
+}
+
+/// Makes the run with a progress line. Throws Interrupted when it was.
+FinishedRunState make_run(const RenderOptions& options, const RunGroup& group) {
+    if (options.resume && !std::filesystem::exists(options.checkpoint))
+        print_message("photonlab: {} is not there: beginning at pass 1\n", options.checkpoint);
     listen_for_interruptions();
     Progress progress(options.passes);
-    std::optional<ErrorMetrics> errors;
-    RunState shown;
-    const RunState last = run_methods(
-        scene, hit_points, {settings},
-        [&](std::size_t, const RunState& state, const Image& image) {
-            const auto is_in = [&](const std::vector<std::uint64_t>& passes) {
-                return std::binary_search(passes.begin(), passes.end(), state.pass);
-            };
-            if (recorder && is_in(recorded)) recorder->record(state, image);
-            if (is_in(snapshots))
-                write_exr(snapshot_file(options.output, state.pass), image, image_metadata(identity, state, scene));
-            if (state.pass != options.passes) return;
-            shown = state;
-            write_exr(options.output, image, image_metadata(identity, state, scene));
-            if (!options.png.empty()) write_png(options.png, image.width, image.height, total(image));
-            if (reference) errors = judge(image, *reference, total_component, photons_carry_direct(settings.method));
-        },
-        [&](std::uint64_t pass, bool is_new) {
-            if (!is_new) progress.skip(pass);
-            progress.show(pass, fmt::format("pass {} of {}", pass, options.passes));
-        },
-        [](std::size_t, std::uint64_t, const Integrator&) {}, continuation)[0];
+    const GroupOutcome outcome =
+        run_group(group, {.seconds_between_saves = options.checkpoint_seconds, .is_interrupted = is_interrupted},
+                  [&](std::uint64_t pass, bool is_new) {
+                      if (!is_new) progress.skip(pass);
+                      progress.show(pass, fmt::format("pass {} of {}", pass, options.passes));
+                  });
     progress.clear();
-    if (last.pass < options.passes)
-        throw Interrupted(fmt::format("interrupted after pass {} of {}; {}", last.pass, options.passes,
+    if (!outcome.is_finished)
+        throw Interrupted(fmt::format("interrupted after pass {} of {}; {}", outcome.passes, options.passes,
                                       options.checkpoint.empty()
                                           ? "nothing is saved without --checkpoint FILE"
                                           : options.checkpoint + " is saved, and --resume goes on from it"));
-    if (!options.checkpoint.empty()) discard(checkpoint);
-    if (!options.csv.empty()) write_columns(columns_file(options.csv));
+    return outcome.runs.at(0);
+}
 
-    print_summary(shown, settings, scene, hit_points.points.size(), errors);
-    for (const std::string& reason : why_images_are_plain(scene, hit_points)) print_output("note        {}\n", reason);
-    if (const auto warning = reference ? warning_about(*reference) : std::nullopt)
-        print_output("note        {}\n", *warning);
+void print_written(const RenderOptions& options, const std::vector<std::uint64_t>& snapshots) {
     print_output("wrote       {}\n", options.output.string());
     for (const std::string& file : {options.png, options.csv})
         if (!file.empty()) print_output("wrote       {}\n", file);
     for (const std::uint64_t pass : snapshots)
         print_output("wrote       {}\n", snapshot_file(options.output, pass).string());
+}
+
+void render(const RenderOptions& options) {
+    require_consistent(options);
+    const ChosenSettings chosen = options.method.settings();
+    check_options([&] { require_perfect_square(options.samples_per_pixel); });
+    const std::vector<std::uint64_t> snapshots = snapshots_of(options);
+    std::optional<Resolution> resolution;
+    if (!options.resolution.empty()) resolution = parse_resolution(options.resolution);
+
+    start_threads(options.threads);
+    const Scene scene = build_scene(load_scene_file(options.scene), resolution);
+    const Experiment experiment = experiment_of(options, chosen, scene, snapshots);
+    const ExperimentRun& run = experiment.runs[0];
+    PreparedRun prepared{&run, settings_of(experiment, run, scene)};
+    check_options([&] { require_resolvable(prepared.settings.method, scene); });
+    std::optional<Reference> reference;
+    if (!options.reference.empty())
+        reference = load_reference(options.reference,
+                                   subject_of(scene, options.samples_per_pixel, prepared.settings.method.max_depth));
+    require_room_for(options, snapshots, scene);
+
+    const MemoryEstimate memory = MemoryEstimator(scene, options.samples_per_pixel).of({prepared.settings}, 0);
+    require_memory(options.scene.string(), memory);
+    print_output("memory      {}\n", describe(memory));
+
+    const auto lock = options.checkpoint.empty() ? std::nullopt : FileLock::try_lock(options.checkpoint + ".lock");
+    if (!options.checkpoint.empty() && !lock)
+        throw InputError(options.checkpoint, "another process is rendering with this checkpoint");
+    const HitPoints hit_points =
+        trace_hit_points(scene, options.samples_per_pixel, options.threads, prepared.settings.method.branch_cutoff);
+    prepared.reference_key = reference ? reference->key : "";
+    prepared.point_key = point_key(experiment, run, prepared.settings, scene, prepared.reference_key);
+    prepared.key = run_key(prepared.point_key, run);
+    prepared.files = files_of(options, prepared.key);
+    const FinishedRunState finished =
+        make_run(options, {experiment, scene, hit_points, reference ? &*reference : nullptr, {}, {&prepared}});
+    write_rest(options, snapshots);
+
+    print_summary(finished.state, prepared.settings, scene, hit_points.points.size(), finished.errors);
+    for (const std::string& reason : why_images_are_plain(scene, hit_points)) print_output("note        {}\n", reason);
+    if (const auto warning = reference ? warning_about(*reference) : std::nullopt)
+        print_output("note        {}\n", *warning);
+    print_written(options, snapshots);
 }
 
 }  // namespace

@@ -81,6 +81,7 @@ void load_checkpoint(std::istream& stream, const std::string& place, const Check
 }
 
 bool load(const Checkpoint& checkpoint, const StateExchange& state) {
+    if (checkpoint.file.empty()) return false;
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(checkpoint.file, error);
     if (status.type() == std::filesystem::file_type::not_found) return false;
@@ -105,6 +106,7 @@ void require_whole_checkpoint(const std::filesystem::path& file) {
 }
 
 void save(const Checkpoint& checkpoint, const StateExchange& state) {
+    if (checkpoint.file.empty()) return;
     TemporaryFile temporary(checkpoint.file);
     std::ofstream stream(temporary.path(), std::ios::binary | std::ios::trunc);
     StateArchive archive(stream);
@@ -122,6 +124,7 @@ void save(const Checkpoint& checkpoint, const StateExchange& state) {
 }
 
 void set_aside(const Checkpoint& checkpoint) {
+    if (checkpoint.file.empty()) return;
     std::error_code error;
     std::filesystem::rename(checkpoint.file, checkpoint.file.string() + ".old", error);
     if (error && error != std::errc::no_such_file_or_directory)
@@ -129,6 +132,7 @@ void set_aside(const Checkpoint& checkpoint) {
 }
 
 void discard(const Checkpoint& checkpoint) {
+    if (checkpoint.file.empty()) return;
     remove_if_there(checkpoint.file);
     remove_leftovers(checkpoint.file.parent_path());
 }

@@ -22,7 +22,7 @@ inline constexpr double default_seconds_between_saves = 30.0;  ///< of all long 
 
 /// Where a run keeps its state.
 struct Checkpoint {
-    std::filesystem::path file;
+    std::filesystem::path file;  ///< empty: it keeps none
     std::string identity;
     std::string advice;  ///< what to do when it is refused, closing its message
 };

@@ -40,29 +40,6 @@ std::vector<const ExperimentRun*> select_runs(const Experiment& experiment, cons
     return selected;
 }
 
-/// Everything that changes what the runs of a point record, but their seed: so neither threads nor the title.
-std::string point_key(const Experiment& experiment, const ExperimentRun& run, const RunSettings& settings,
-                      const Scene& scene, const std::string& reference_key) {
-    const SceneEntry& entry = experiment.scenes[run.scene];
-    Json probes = Json::array();
-    for (const Probe& probe : entry.probes) probes.push_back({probe.name, probe.x, probe.y});
-    return hash_text(Json{
-        {"program", program_version().version},
-        {"experiment", experiment.name},
-        {"point", run.point},
-        {"settings", settings_json(settings.method)},
-        {"columns", csv_header()},
-        {"passes", settings.passes},
-        {"recorded", run.plan.recorded},
-        {"width", scene.camera.width},
-        {"height", scene.camera.height},
-        {"samples_per_pixel", experiment.samples_per_pixel},
-        {"scene", scene.hash},
-        {"probes", probes},
-        {"reference",
-         reference_key}}.dump());
-}
-
 /// Refuses regions and probes outside the image.
 void require_inside(const std::filesystem::path& experiment_file, const SceneEntry& entry, const Scene& scene) {
     const int width = scene.camera.width;
@@ -91,6 +68,39 @@ bool is_made(const Experiment& experiment, const PreparedRun& run, const std::fi
            (!experiment.decomposition || ensemble_of(experiment, run, results).contains(run.run->seed));
 }
 
+std::string point_key(const Experiment& experiment, const ExperimentRun& run, const RunSettings& settings,
+                      const Scene& scene, const std::string& reference_key) {
+    const SceneEntry& entry = experiment.scenes[run.scene];
+    Json probes = Json::array();
+    for (const Probe& probe : entry.probes) probes.push_back({probe.name, probe.x, probe.y});
+    return hash_text(Json{
+        {"program", program_version().version},
+        {"experiment", experiment.name},
+        {"point", run.point},
+        {"settings", settings_json(settings.method)},
+        {"columns", csv_header()},
+        {"passes", settings.passes},
+        {"recorded", run.plan.recorded},
+        {"width", scene.camera.width},
+        {"height", scene.camera.height},
+        {"samples_per_pixel", experiment.samples_per_pixel},
+        {"scene", scene.hash},
+        {"probes", probes},
+        {"reference",
+         reference_key}}.dump());
+}
+
+std::string run_key(const std::string& point_key, const ExperimentRun& run) {
+    return hash_text(fmt::format("{} {} {}", point_key, run.seed, Json(run.plan.snapshots).dump()));
+}
+
+RunSettings settings_of(const Experiment& experiment, const ExperimentRun& run, const Scene& scene) {
+    RunSettings settings{resolve(run.settings, scene.max_depth), run.seed, run.plan.passes, experiment.threads, {}};
+    std::set_union(run.plan.recorded.begin(), run.plan.recorded.end(), run.plan.snapshots.begin(),
+                   run.plan.snapshots.end(), std::back_inserter(settings.shown));
+    return settings;
+}
+
 ReferenceSubject subject_of(const Scene& scene, int samples_per_pixel, int max_depth) {
     return {scene.hash, scene.camera.width, scene.camera.height, samples_per_pixel, max_depth};
 }
@@ -107,10 +117,11 @@ public:
 
     void add(const ExperimentRun& run) {
         const Point& point = point_of(run);
-        PreparedRun ready{&run, point.settings, "", point.key, point.reference_key, results_ / "runs" / run.name,
-                          false};
+        PreparedRun ready{&run, point.settings, "", point.key, point.reference_key, results_ / "runs" / run.name};
         ready.settings.seed = run.seed;
-        ready.key = hash_text(fmt::format("{} {} {}", point.key, run.seed, point.snapshots));
+        ready.key = run_key(point.key, run);
+        ready.files =
+            files_in(ready.folder, ready.key + (experiment_.decomposition ? ", with images for sums over seeds" : ""));
         ready.finished = is_as_it_finished(ready) && (!point.ensemble || point.ensemble->contains(run.seed));
         prepared_.runs.push_back(std::move(ready));
     }
@@ -126,7 +137,6 @@ private:
         RunSettings settings;
         std::string key;
         std::string reference_key;
-        std::string snapshots;
         std::optional<Ensemble> ensemble;
     };
 
@@ -156,21 +166,16 @@ private:
         Point& point = known->second;
         if (!is_new) return point;
         const Scene& scene = scene_of(run);
-        point.settings.method = resolve(run.settings, scene.max_depth);
+        point.settings = settings_of(experiment_, run, scene);
         try {
             require_resolvable(point.settings.method, scene);
         } catch (const InputError& error) {
             throw InputError(experiment_.file.string(), fmt::format("run {}: {}", run.name, error.what()));
         }
-        point.settings.passes = run.plan.passes;
-        point.settings.threads = experiment_.threads;
-        std::set_union(run.plan.recorded.begin(), run.plan.recorded.end(), run.plan.snapshots.begin(),
-                       run.plan.snapshots.end(), std::back_inserter(point.settings.shown));
         point.reference_key = reference_key_of(run, scene, point.settings.method.max_depth);
         point.key = point_key(experiment_, run, point.settings, scene, point.reference_key);
-        point.snapshots = Json(run.plan.snapshots).dump();
         if (experiment_.decomposition)
-            point.ensemble = ensemble_of(experiment_, {&run, point.settings, "", point.key, "", {}, false}, results_);
+            point.ensemble = ensemble_of(experiment_, {&run, point.settings, "", point.key}, results_);
         return point;
     }
 

@@ -35,6 +35,16 @@ PreparedExperiment prepare_experiment(const Experiment& experiment, const std::f
 /// True when the run finished with its key, its files are as they were then, and the ensemble has its images.
 bool is_made(const Experiment& experiment, const PreparedRun& run, const std::filesystem::path& results);
 
+/// Everything that changes what the runs of a point record, but their seed: so neither threads nor the title.
+std::string point_key(const Experiment& experiment, const ExperimentRun& run, const RunSettings& settings,
+                      const Scene& scene, const std::string& reference_key);
+
+/// By which a finished run is recognised.
+std::string run_key(const std::string& point_key, const ExperimentRun& run);
+
+/// The settings of a run on its scene.
+RunSettings settings_of(const Experiment& experiment, const ExperimentRun& run, const Scene& scene);
+
 /// What a reference of the scene must be of.
 ReferenceSubject subject_of(const Scene& scene, int samples_per_pixel, int max_depth);
 

@@ -140,8 +140,8 @@ bool open_results(const Experiment& experiment, const std::filesystem::path& res
 }
 
 /// What a process left of a finished run that was killed before it had cleared up.
-void clear_up(const Experiment& experiment, const PreparedRun& ready) {
-    const Checkpoint checkpoint = checkpoint_of(experiment, ready);
+void clear_up(const PreparedRun& ready) {
+    const Checkpoint& checkpoint = ready.files.checkpoint;
     const std::filesystem::path lock_file = ready.folder / "lock";
     if (!is_there(checkpoint.file) && !is_there(lock_file)) return;
     if (const auto lock = FileLock::try_lock(lock_file)) discard(checkpoint);
@@ -196,8 +196,7 @@ private:
         const auto first_made =
             std::stable_partition(locked.runs.begin(), locked.runs.end(),
                                   [&](const PreparedRun* run) { return !is_made(experiment_, *run, results_); });
-        std::for_each(first_made, locked.runs.end(),
-                      [&](const PreparedRun* run) { discard(checkpoint_of(experiment_, *run)); });
+        std::for_each(first_made, locked.runs.end(), [&](const PreparedRun* run) { discard(run->files.checkpoint); });
         outcome.skipped += static_cast<std::size_t>(locked.runs.end() - first_made);
         locked.runs.erase(first_made, locked.runs.end());
         if (locked.runs.empty()) return false;
@@ -217,7 +216,7 @@ private:
         outcome.is_interrupted = !made.is_finished;
         if (outcome.is_interrupted) return true;
         outcome.ran += locked.runs.size();
-        progress_.finished(made.summary);
+        for (const FinishedRunState& run : made.runs) progress_.finished(run.summary);
         return true;
     }
 
@@ -261,7 +260,7 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
                                  const std::filesystem::path& results, const ContinuationOptions& options) {
     if (!options.fresh)
         for (const PreparedRun& ready : prepared.runs)
-            if (!ready.finished) is_usable(checkpoint_of(experiment, ready));
+            if (!ready.finished) is_usable(ready.files.checkpoint);
     std::vector<RunsTogether> groups = runs_together(prepared.runs);
     if (const auto largest = largest_memory(experiment, prepared, groups)) {
         require_memory(largest->first_run, largest->estimate);
@@ -277,7 +276,7 @@ ExperimentOutcome run_experiment(const Experiment& experiment, const PreparedExp
     if (outcome.is_interrupted) return outcome;
     for (const PreparedRun& ready : prepared.runs) {
         if (!ready.finished) continue;
-        clear_up(experiment, ready);
+        clear_up(ready);
         ++outcome.skipped;
     }
     Making(experiment, prepared, results, options, groups).make_all(std::move(groups), outcome);

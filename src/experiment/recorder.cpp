@@ -34,12 +34,14 @@ void reset_peak_resident() {
 }
 
 Recorder::Recorder(RunIdentity identity, const Reference* reference, const std::filesystem::path& file)
-    : identity_(std::move(identity)), reference_(reference), file_(file) {}
+    : identity_(std::move(identity)), reference_(reference) {
+    if (!file.empty()) file_.emplace(file);
+}
 
 void Recorder::record(const RunState& state, const Image& image) {
     peak_ = std::max(peak_, peak_resident_mib());
     const bool carried = photons_carry_direct(identity_.settings.method);
-    std::string rows = file_.is_empty() ? csv_header() + "\n" : "";
+    std::string rows = file_ && file_->is_empty() ? csv_header() + "\n" : "";
     for (const std::string& component : components) {
         std::optional<ErrorMetrics> errors;
         if (reference_) errors = judge(image, *reference_, component, carried);
@@ -50,11 +52,11 @@ void Recorder::record(const RunState& state, const Image& image) {
         }
         rows += csv_row({identity_, state, component, errors, nonfinite, peak_}) + "\n";
     }
-    file_.append(rows);
+    if (file_) file_->append(rows);
 }
 
 void Recorder::exchange(StateArchive& archive) {
-    file_.exchange(archive);
+    if (file_) file_->exchange(archive);
     archive.exchange(peak_);
     archive.exchange(nonfinite_count_);
     archive.exchange_each(first_nonfinite_, [](StateArchive& each, NonfinitePixel& pixel) {

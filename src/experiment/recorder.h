@@ -37,7 +37,8 @@ void reset_peak_resident();
 /// Writes a run's rows as its passes finish.
 class Recorder {
 public:
-    /// `reference` may be nullptr; it must outlive the recorder. The file is replaced by the first record().
+    /// `reference` may be nullptr; it must outlive the recorder. The file is replaced by the first record(); without a
+    /// name rows are not kept.
     Recorder(RunIdentity identity, const Reference* reference, const std::filesystem::path& file);
 
     /// Appends the rows of a pass, one a component.
@@ -47,7 +48,7 @@ public:
     void exchange(StateArchive& archive);
 
     /// Of the file as it was written, whatever has become of it since.
-    FileStamp stamp() const { return {file_.size(), file_.hash()}; }
+    FileStamp stamp() const { return file_ ? FileStamp{file_->size(), file_->hash()} : FileStamp{}; }
 
     const RunIdentity& identity() const { return identity_; }
     std::uint64_t nonfinite_pixels() const { return nonfinite_count_; }  ///< summed over the rows of component total
@@ -59,7 +60,7 @@ private:
 
     RunIdentity identity_;
     const Reference* reference_;
-    AppendedFile file_;
+    std::optional<AppendedFile> file_;
     double peak_ = 0.0;
     std::uint64_t nonfinite_count_ = 0;
     std::vector<NonfinitePixel> first_nonfinite_;

@@ -56,12 +56,14 @@ std::string probe_rows(const RunIdentity& identity, const std::vector<Probe>& pr
 /// A run while it is running.
 struct OpenRun {
     const PreparedRun* prepared;
-    Checkpoint checkpoint;
     RunRecord record;
     Recorder recorder;
     std::vector<PassImage> recorded_images;  // for the ensemble
     std::string probes;                      // rows
     std::vector<FileStamp> snapshots;        // that are written, in the order of record.snapshots
+    RunState last_shown = {};
+
+    const RunFiles& files() const { return prepared->files; }
 };
 
 void exchange(StateArchive& archive, PassImage& image) {
@@ -87,21 +89,20 @@ void exchange(StateArchive& archive, OpenRun& run) {
     });
 }
 
-/// Everything a run has in its folder goes, but for its checkpoint, which is set aside.
-void begin_anew(const OpenRun& run) {
-    const std::filesystem::path& folder = run.prepared->folder;
-    for (const char* file : {"run.json", "probes.csv", "snapshots"}) remove_if_there(folder / file);
-    set_aside(run.checkpoint);
+/// What a run has left elsewhere than in its rows goes, but for its checkpoint, which is set aside.
+void begin_anew(const RunFiles& files) {
+    for (const std::filesystem::path& file : {files.description, files.probes, files.snapshots})
+        if (!file.empty()) std::filesystem::remove_all(file);
+    set_aside(files.checkpoint);
 }
 
 OpenRun open_run(const RunGroup& group, const PreparedRun& prepared) {
     const SceneEntry& entry = group.experiment.scenes[prepared.run->scene];
     std::vector<Snapshot> snapshots;
     for (const std::uint64_t pass : prepared.run->plan.snapshots)
-        snapshots.push_back({pass, "snapshots/" + snapshot_name(pass)});
+        snapshots.push_back({pass, prepared.files.snapshot(pass).lexically_relative(prepared.folder).generic_string()});
     return {
         &prepared,
-        checkpoint_of(group.experiment, prepared),
         RunRecord{group.experiment.title,
                   prepared.run->method,
                   prepared.key,
@@ -115,7 +116,7 @@ OpenRun open_run(const RunGroup& group, const PreparedRun& prepared) {
                   {}},
         Recorder({group.experiment.name, prepared.run->name, entry.name, prepared.settings, group.scene.camera.width,
                   group.scene.camera.height, group.experiment.samples_per_pixel, group.hit_points.points.size()},
-                 group.reference, prepared.folder / "iterations.csv"),
+                 group.reference, prepared.files.rows),
         {},
         {},
         {}};
@@ -134,44 +135,52 @@ bool add_to_ensemble(const RunGroup& group, const OpenRun& run, const std::funct
 /// goes on from later passes, is of no use any more.
 void require_snapshots(const OpenRun& run) {
     for (std::size_t i = 0; i < run.snapshots.size(); ++i) {
-        const auto fault =
-            fault_of(run.prepared->folder / run.record.snapshots[i].file, run.snapshots[i], Check::Everything);
+        const std::filesystem::path file = run.files().snapshot(run.record.snapshots[i].pass);
+        const auto fault = fault_of(file, run.snapshots[i], Check::Everything);
         if (!fault) continue;
-        discard(run.checkpoint);
+        discard(run.files().checkpoint);
         throw InputError(*fault + ", a moment ago; its run begins anew the next time");
     }
 }
 
-/// Writes what is written once all passes are done; returns a line on it.
-std::string finish(const RunGroup& group, OpenRun& run, const RunState& last) {
-    const std::filesystem::path& folder = run.prepared->folder;
-    run.record.files["iterations.csv"] = run.recorder.stamp();
-    require_snapshots(run);
-    for (std::size_t i = 0; i < run.snapshots.size(); ++i)
-        run.record.files[run.record.snapshots[i].file] = run.snapshots[i];
-    if (!run.probes.empty()) {
-        const std::string probes = probes_header + "\n" + run.probes;
-        write_text_file(folder / "probes.csv", probes);
-        run.record.files["probes.csv"] = stamp_of_text(probes);
-    }
-    if (group.experiment.decomposition)
-        run.record.ensemble = {"ensembles/" + run.prepared->run->point, run.prepared->point_key};
-    write_text_file(folder / "run.json", with_checksum(run_json(run.record, run.recorder, last, group.scene,
-                                                                group.hit_points, group.reference)));
-    discard(run.checkpoint);
-
+/// How a run that is finished is told of.
+std::string summary_of(const OpenRun& run, const RunState& last) {
     std::string line = fmt::format("finished {} in {}", run.prepared->run->name, describe_duration(last.times.total()));
     if (run.recorder.last_total_errors()) line += ", rmse " + describe_rmse(*run.recorder.last_total_errors());
     if (run.recorder.nonfinite_pixels() > 0) line += ", with non-finite pixels (run.json says where)";
     return line;
 }
 
+/// Writes what is written once all passes are done.
+void finish(const RunGroup& group, OpenRun& run, const RunState& last) {
+    const RunFiles& files = run.files();
+    require_snapshots(run);
+    if (!files.probes.empty() && !run.probes.empty()) {
+        const std::string probes = probes_header + "\n" + run.probes;
+        write_text_file(files.probes, probes);
+        run.record.files["probes.csv"] = stamp_of_text(probes);
+    }
+    if (!files.description.empty()) {
+        run.record.files["iterations.csv"] = run.recorder.stamp();
+        for (std::size_t i = 0; i < run.snapshots.size(); ++i)
+            run.record.files[run.record.snapshots[i].file] = run.snapshots[i];
+        if (group.experiment.decomposition)
+            run.record.ensemble = {"ensembles/" + run.prepared->run->point, run.prepared->point_key};
+        write_text_file(files.description, with_checksum(run_json(run.record, run.recorder, last, group.scene,
+                                                                  group.hit_points, group.reference)));
+    }
+    discard(files.checkpoint);
+}
+
 }  // namespace
 
-Checkpoint checkpoint_of(const Experiment& experiment, const PreparedRun& prepared) {
-    return {prepared.folder / "checkpoint",
-            prepared.key + (experiment.decomposition ? ", with images for sums over seeds" : ""),
-            "remove it, or begin anew beside it with --fresh"};
+RunFiles files_in(const std::filesystem::path& folder, const std::string& identity) {
+    return {folder / "iterations.csv",
+            folder / "probes.csv",
+            folder / "run.json",
+            folder / "snapshots",
+            [folder](std::uint64_t pass) { return folder / "snapshots" / snapshot_name(pass); },
+            {folder / "checkpoint", identity, "remove it, or begin anew beside it with --fresh"}};
 }
 
 Ensemble ensemble_of(const Experiment& experiment, const PreparedRun& prepared, const std::filesystem::path& results) {
@@ -221,8 +230,9 @@ GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options
         };
     };
     const auto restore = [&](std::size_t i, const StateExchange& method) {
-        if (options.fresh || !load(open[i].checkpoint, state_of(open[i], method))) begin_anew(open[i]);
-        make_folder(open[i].prepared->folder / "snapshots");
+        const RunFiles& files = open[i].files();
+        if (options.fresh || !load(files.checkpoint, state_of(open[i], method))) begin_anew(files);
+        if (!files.snapshots.empty()) make_folder(files.snapshots);
     };
     CheckpointClock clock(options.seconds_between_saves);
     bool is_interrupted = false;
@@ -237,7 +247,8 @@ GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options
             });
         if (is_interrupted || (is_due && !is_last)) {
             count_seconds();
-            for (std::size_t i = 0; i < open.size(); ++i) save(open[i].checkpoint, state_of(open[i], methods[i]));
+            for (std::size_t i = 0; i < open.size(); ++i)
+                save(open[i].files().checkpoint, state_of(open[i], methods[i]));
             clock.saved();
         }
         return !is_interrupted;
@@ -247,13 +258,14 @@ GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options
         group.scene, group.hit_points, settings,
         [&](std::size_t method, const RunState& state, const Image& image) {
             OpenRun& run = open[method];
+            run.last_shown = state;
             const PassPlan& plan = run.prepared->run->plan;
             if (contains(plan.recorded, state.pass)) {
                 run.recorder.record(state, image);
                 if (group.experiment.decomposition) run.recorded_images.push_back({state.pass, image});
             }
             if (contains(plan.snapshots, state.pass)) {
-                const std::filesystem::path file = run.prepared->folder / "snapshots" / snapshot_name(state.pass);
+                const std::filesystem::path file = run.files().snapshot(state.pass);
                 write_exr(file, image, image_metadata(run.recorder.identity(), state, group.scene));
                 run.snapshots.push_back(stamp_of(file));
             }
@@ -265,11 +277,14 @@ GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options
         },
         {restore, goes_on});
 
-    GroupOutcome outcome;
+    GroupOutcome outcome{.passes = last[0].pass};
     if (is_interrupted) return outcome;
     count_seconds();
-    for (std::size_t i = 0; i < open.size(); ++i)
-        outcome.summary += fmt::format("{}{}", i > 0 ? "\n" : "", finish(group, open[i], last[i]));
+    for (std::size_t i = 0; i < open.size(); ++i) {
+        finish(group, open[i], last[i]);
+        outcome.runs.push_back(
+            {open[i].last_shown, open[i].recorder.last_total_errors(), summary_of(open[i], last[i])});
+    }
     outcome.is_finished = true;
     return outcome;
 }

@@ -23,14 +23,28 @@
 
 namespace photonlab {
 
+/// Where a run puts what it makes. An empty name: nowhere.
+struct RunFiles {
+    std::filesystem::path rows;              ///< CSV
+    std::filesystem::path probes = {};       ///< CSV
+    std::filesystem::path description = {};  ///< run.json
+    std::filesystem::path snapshots = {};    ///< folder of its own for them
+    std::function<std::filesystem::path(std::uint64_t pass)> snapshot;
+    Checkpoint checkpoint;  ///< its state while it is not finished
+};
+
+/// Those of a run in a folder of its own; `identity` is that of its checkpoint.
+RunFiles files_in(const std::filesystem::path& folder, const std::string& identity);
+
 /// A run that is ready to start: its scene is there, its reference fits.
 struct PreparedRun {
     const ExperimentRun* run = nullptr;
     RunSettings settings;
     std::string key;
-    std::string point_key;  ///< the same without the seed
+    std::string point_key;      ///< the same without the seed
     std::string reference_key;  ///< empty without a reference
     std::filesystem::path folder;
+    RunFiles files = {};
     bool finished = false;  ///< with this key
 };
 
@@ -51,17 +65,22 @@ struct RunGroup {
     std::vector<const PreparedRun*> runs;
 };
 
-struct GroupOutcome {
-    bool is_finished = false;  ///< false: interrupted, and saved
-    std::string summary;       ///< a line a run
+/// A run after its last pass.
+struct FinishedRunState {
+    RunState state;
+    std::optional<ErrorMetrics> errors;  ///< of the whole picture; empty without a reference
+    std::string summary;                 ///< a line
 };
 
-/// Makes the runs, each from its checkpoint if it has one. run.json goes first and comes last, so that no half-made
-/// run looks finished.
-GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options, const PassListener& on_pass);
+struct GroupOutcome {
+    bool is_finished = false;            ///< false: interrupted, and saved
+    std::uint64_t passes = 0;            ///< done
+    std::vector<FinishedRunState> runs;  ///< when they are finished
+};
 
-/// Where a run's state is kept while it is not finished.
-Checkpoint checkpoint_of(const Experiment& experiment, const PreparedRun& prepared);
+/// Makes the runs, each from its checkpoint if it has one. The description goes first and comes last, so that no
+/// half-made run looks finished.
+GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options, const PassListener& on_pass);
 
 /// The sums over seeds that a run's images belong to.
 Ensemble ensemble_of(const Experiment& experiment, const PreparedRun& prepared, const std::filesystem::path& results);
