@@ -168,14 +168,23 @@ std::vector<std::uint64_t> snapshots_of(const RenderOptions& options) {
 /// The experiment of one run that a render is.
 Experiment experiment_of(const RenderOptions& options, const ChosenSettings& settings, const Scene& scene,
                          const std::vector<std::uint64_t>& snapshots) {
-    ExperimentRun run{.name = "render", .point = "render", .method = settings.values.integrator, .settings = settings};
+    ExperimentRun run;
+    run.name = run.point = "render";
+    run.method = settings.values.integrator;
+    run.settings = settings;
     run.plan = {options.passes, options.csv.empty() ? std::vector{options.passes} : powers_of_two(options.passes),
                 snapshots};
     if (snapshots.empty() || snapshots.back() != options.passes) run.plan.snapshots.push_back(options.passes);
     run.seed = options.seed;
 
-    Experiment experiment{.file = options.scene, .name = "render", .title = "render"};
-    experiment.scenes = {{.file = options.scene, .name = valid_text(scene.name)}};
+    SceneEntry entry;
+    entry.file = options.scene;
+    entry.name = valid_text(scene.name);
+
+    Experiment experiment;
+    experiment.file = options.scene;
+    experiment.name = experiment.title = "render";
+    experiment.scenes = {std::move(entry)};
     experiment.runs = {std::move(run)};
     experiment.samples_per_pixel = options.samples_per_pixel;
     experiment.threads = options.threads;
@@ -240,6 +249,7 @@ void print_written(const RenderOptions& options, const std::vector<std::uint64_t
     print_output("wrote       {}\n", options.output.string());
     for (const std::string& file : {options.png, options.csv})
         if (!file.empty()) print_output("wrote       {}\n", file);
+    if (!options.csv.empty()) print_output("wrote       {}\n", columns_file(options.csv).string());
     for (const std::uint64_t pass : snapshots)
         print_output("wrote       {}\n", snapshot_file(options.output, pass).string());
 }

@@ -40,10 +40,10 @@ RunFiles files_in(const std::filesystem::path& folder, const std::string& identi
 struct PreparedRun {
     const ExperimentRun* run = nullptr;
     RunSettings settings;
-    std::string key;
-    std::string point_key;      ///< the same without the seed
-    std::string reference_key;  ///< empty without a reference
-    std::filesystem::path folder;
+    std::string key = "";
+    std::string point_key = "";      ///< the same without the seed
+    std::string reference_key = "";  ///< empty without a reference
+    std::filesystem::path folder = {};
     RunFiles files = {};
     bool finished = false;  ///< with this key
 };
@@ -75,7 +75,7 @@ struct FinishedRunState {
 struct GroupOutcome {
     bool is_finished = false;            ///< false: interrupted, and saved
     std::uint64_t passes = 0;            ///< done
-    std::vector<FinishedRunState> runs;  ///< when they are finished
+    std::vector<FinishedRunState> runs = {};  ///< when they are finished
 };
 
 /// Makes the runs, each from its checkpoint if it has one. The description goes first and comes last, so that no
