@@ -14,9 +14,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "experiment/columns.h"
 #include "integrators/registry.h"
 #include "integrators/settings_table.h"
+#include "experiment/columns.h"
 
 namespace photonlab {
 
@@ -57,13 +57,13 @@ inline std::string with_tables(std::string page) {
                                       {"settings", table_of_settings()},
                                       {"columns", table_of_columns()}}) {
         const std::string begin = fmt::format("<!-- {}: written by the target manual -->\n\n", name);
-        const std::string end = fmt::format("\n<!-- end of {} -->", name);
+        const std::string end = fmt::format("<!-- end of {} -->", name);
         const std::size_t from = page.find(begin);
         const std::size_t to = page.find(end, from);
         if (from == std::string::npos || to == std::string::npos)
             throw std::runtime_error(
                 fmt::format("docs/manual.md: expected the table of {} between its two lines", name));
-        page.replace(from + begin.size(), to - from - begin.size(), table);
+        page.replace(from + begin.size(), to - from - begin.size(), table + "\n");
     }
     return page;
 }
