@@ -32,20 +32,16 @@ struct InfoOptions {
 };
 
 void print_shapes(const Scene& scene) {
-    std::size_t meshes = 0;
     std::size_t triangles = 0;
-    std::size_t spheres = 0;
-    std::size_t disks = 0;
+    std::map<std::string_view, std::size_t> count;
     for (const Shape& shape : scene.shapes) {
-        if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
-            ++meshes;
-            triangles += mesh->triangles.size();
-        }
-        spheres += std::holds_alternative<Sphere>(shape.geometry);
-        disks += std::holds_alternative<Disk>(shape.geometry);
+        ++count[shape_kind(shape)];
+        if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) triangles += mesh->triangles.size();
     }
-    print_output("shapes      {}: {} meshes of {} triangles in all, {} spheres, {} disks\n", scene.shapes.size(),
-                 meshes, triangles, spheres, disks);
+    std::string others;
+    for (const std::string_view kind : analytic_shape_kinds()) others += fmt::format(", {} {}s", count[kind], kind);
+    print_output("shapes      {}: {} meshes of {} triangles in all{}\n", scene.shapes.size(), count[TriangleMesh::name],
+                 triangles, others);
 }
 
 void print_materials(const Scene& scene) {
@@ -64,8 +60,7 @@ void print_emitters(const Scene& scene) {
     for (const Emitter& emitter : scene.emitters) {
         const ColorD power = emitter.power * area_unit;
         print_output("            {} light, power {:.6g} {:.6g} {:.6g}, chosen with probability {:.4g}\n",
-                     std::holds_alternative<AreaLight>(emitter.kind) ? "area" : "point", power.x, power.y, power.z,
-                     emitter.choice_probability);
+                     emitter_kind(emitter), power.x, power.y, power.z, emitter.choice_probability);
     }
 }
 

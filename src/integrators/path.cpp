@@ -83,10 +83,8 @@ PathSample trace_path(const Scene& scene, const HitPoint& point, int max_depth, 
 /// Light of a point that reaches a diffuse surface by a mirror or through glass is found by photons alone: a path from
 /// the camera would have to hit the point.
 void require_findable_light(const Scene& scene, int max_depth) {
-    const bool has_point_light = std::any_of(scene.emitters.begin(), scene.emitters.end(), [](const Emitter& emitter) {
-        return std::holds_alternative<PointLight>(emitter.kind);
-    });
-    if (!has_point_light || !depth_allows(max_depth, 3)) return;
+    const bool all_are_met = std::all_of(scene.emitters.begin(), scene.emitters.end(), is_met_by_rays);
+    if (all_are_met || !depth_allows(max_depth, 3)) return;
     for (const Shape& shape : scene.shapes) {
         const Material& material = scene.materials[shape.material];
         if (is_specular(material.bsdf))

@@ -4,61 +4,22 @@
 
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "core/math.h"
+#include "scene/emitters/light.h"
 #include "scene/materials/material.h"
+#include "scene/shapes/shape.h"
 
 namespace photonlab {
-
-/// Triangles over shared vertices, counter-clockwise seen from outside.
-struct MeshDescription {
-    std::vector<VectorD> positions;
-    std::vector<VectorD> normals;                 ///< one a vertex, unit length; empty: flat shading
-    std::vector<Imath::V2d> texture_coordinates;  ///< one a vertex; empty: barycentric, those of the second and third
-    std::vector<Imath::Vec3<std::uint32_t>> triangles;
-};
-
-/// Axes about which a round shape's texture coordinates run: unit length, at right angles; left-handed where mirrored.
-using TextureAxes = std::array<VectorD, 3>;
-inline const TextureAxes scene_axes{VectorD(1, 0, 0), VectorD(0, 1, 0), VectorD(0, 0, 1)};
-
-/// Texture coordinates: u is the angle about the third axis, from the first axis to the second, and v that from the
-/// third axis; 1 is once around, and at the opposite pole.
-struct SphereDescription {
-    VectorD centre;
-    double radius = 1.0;        ///< > 0
-    bool flip_normals = false;  ///< true: the normal points to the centre
-    TextureAxes texture_axes = scene_axes;
-};
-
-/// Texture coordinates: u is the distance from the centre in radii, v the angle from the first axis to the second; 1 is
-/// once around. The first two axes are in the disk's plane.
-struct DiskDescription {
-    VectorD centre;
-    VectorD normal;       ///< unit length
-    double radius = 1.0;  ///< > 0
-    TextureAxes texture_axes = scene_axes;
-};
-
-using Geometry = std::variant<MeshDescription, SphereDescription, DiskDescription>;
 
 struct ShapeDescription {
     Geometry geometry;
     std::size_t material = 0;        ///< index into SceneDescription::materials
     std::optional<ColorD> radiance;  ///< of an area light: W/(m^2 sr), emitted to the side of the normal
     std::string place;               ///< "file:line" for messages
-};
-
-struct PointLightDescription {
-    VectorD position;
-    ColorD intensity;  ///< W/sr
-    std::string place;
 };
 
 inline constexpr int largest_image_side = 65536;  ///< pixels, of an image that is rendered
@@ -75,7 +36,7 @@ struct CameraDescription {
 struct SceneDescription {
     std::vector<Material> materials;
     std::vector<ShapeDescription> shapes;
-    std::vector<PointLightDescription> point_lights;
+    std::vector<LightDescription> lights;  ///< those that no shape bears
     CameraDescription camera;
     int max_depth = -1;              ///< the scene file's own integrator setting; -1 is unlimited
     std::string name;                ///< of the scene's folder, or of the file if that is not scene.xml

@@ -1,4 +1,4 @@
-// What Embree is told: buffers for meshes, callbacks for spheres and disks. The callbacks compute in double, since a
+// What Embree is told: buffers for meshes, callbacks for all other shapes. The callbacks compute in double, since a
 // float32 quadratic loses a sphere seen from far away, and round only the distance that Embree compares.
 
 #include "scene/embree_scene.h"
@@ -13,45 +13,11 @@ namespace photonlab {
 
 namespace {
 
-/// Distances in [near, far] at which origin + t direction meets the surface, nearest first; up to two.
-struct Roots {
-    int count = 0;
-    double t[2] = {0.0, 0.0};
-};
-
-/// The quadratic in the form that does not cancel: the root of larger magnitude by addition, the other by division.
-Roots intersect_analytic(const Sphere& sphere, const VectorD& origin, const VectorD& direction) {
-    const VectorD offset = origin - VectorD(sphere.centre);
-    const double a = direction.length2();
-    const double half_b = offset.dot(direction);
-    const double radius = sphere.radius;
-    // The discriminant from the closest point's distance, which stays accurate for far origins.
-    const VectorD closest = offset - direction * (half_b / a);
-    const double discriminant = a * (radius * radius - closest.length2());
-    if (!(discriminant >= 0.0)) return {};
-    const double c = (offset.length() - radius) * (offset.length() + radius);
-    const double q = -(half_b + std::copysign(std::sqrt(discriminant), half_b));
-    double near = q / a;
-    double far = q != 0.0 ? c / q : near;
-    if (near > far) std::swap(near, far);
-    return {2, {near, far}};
-}
-
-Roots intersect_analytic(const Disk& disk, const VectorD& origin, const VectorD& direction) {
-    const VectorD normal(disk.frame.normal);
-    const double slope = direction.dot(normal);
-    if (slope == 0.0) return {};
-    const double t = (VectorD(disk.centre) - origin).dot(normal) / slope;
-    const VectorD offset = origin + direction * t - VectorD(disk.centre);
-    const double radius = disk.radius;
-    return offset.length2() <= radius * radius ? Roots{1, {t, 0.0}} : Roots{};
-}
-
 /// First root strictly inside the ray's interval, or nothing.
-std::optional<float> first_hit(const std::variant<Sphere, Disk>& shape, const RTCRay& ray) {
+std::optional<float> first_hit(const Analytic& shape, const RTCRay& ray) {
     const VectorD origin(ray.org_x, ray.org_y, ray.org_z);
     const VectorD direction(ray.dir_x, ray.dir_y, ray.dir_z);
-    const Roots roots = std::visit([&](const auto& s) { return intersect_analytic(s, origin, direction); }, shape);
+    const Roots roots = std::visit([&](const auto& s) { return s.roots(origin, direction); }, shape);
     for (int i = 0; i < roots.count; ++i) {
         const double t = roots.t[i];
         if (t > ray.tnear && t < ray.tfar) return static_cast<float>(t);
@@ -59,25 +25,13 @@ std::optional<float> first_hit(const std::variant<Sphere, Disk>& shape, const RT
     return std::nullopt;
 }
 
-const std::variant<Sphere, Disk>& shape_of(void* pointer) {
-    return *static_cast<std::variant<Sphere, Disk>*>(pointer);
+const Analytic& shape_of(void* pointer) {
+    return *static_cast<Analytic*>(pointer);
 }
 
 void set_bounds(const RTCBoundsFunctionArguments* arguments) {
     const auto& shape = shape_of(arguments->geometryUserPtr);
-    Vector centre;
-    Vector reach;
-    if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-        centre = sphere->centre;
-        reach = Vector(sphere->radius);
-    } else {
-        const Disk& disk = std::get<Disk>(shape);
-        centre = disk.centre;
-        for (int axis = 0; axis < 3; ++axis) {
-            const float n = disk.frame.normal[axis];
-            reach[axis] = disk.radius * std::sqrt(std::max(0.0f, 1.0f - n * n));
-        }
-    }
+    auto [centre, reach] = std::visit([](const auto& kind) { return kind.extent(); }, shape);
     // A little wider than the shape, so that rounding cannot put a hit outside its bounds.
     const float slack = 4.0f * std::numeric_limits<float>::epsilon();
     reach += (Vector(std::abs(centre.x), std::abs(centre.y), std::abs(centre.z)) + reach + Vector(slack)) * slack;
@@ -151,7 +105,7 @@ RTCGeometry make_mesh(RTCDevice device, const TriangleMesh& mesh) {
     return geometry;
 }
 
-RTCGeometry make_analytic(RTCDevice device, std::variant<Sphere, Disk>& shape) {
+RTCGeometry make_analytic(RTCDevice device, Analytic& shape) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, 1);
     rtcSetGeometryUserData(geometry, &shape);
@@ -179,8 +133,11 @@ std::unique_ptr<EmbreeScene, EmbreeSceneDeleter> build_embree_scene(const std::v
     rtcSetSceneFlags(embree->scene, RTC_SCENE_FLAG_ROBUST);
 
     for (const Shape& shape : shapes) {
-        if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) embree->analytic.emplace_back(*sphere);
-        if (const auto* disk = std::get_if<Disk>(&shape.geometry)) embree->analytic.emplace_back(*disk);
+        std::visit(
+            [&]<typename Kind>(const Kind& kind) {
+                if constexpr (AnalyticKind<Kind>) embree->analytic.emplace_back(kind);
+            },
+            shape.geometry);
     }
     std::size_t next_analytic = 0;
     for (std::size_t i = 0; i < shapes.size(); ++i) {

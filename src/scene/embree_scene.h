@@ -1,5 +1,5 @@
-// The scene's shapes inside Embree: meshes as its triangles, spheres and disks as user geometry that is intersected
-// here, in double. A geometry's number is its shape's index in Scene::shapes.
+// The scene's shapes inside Embree: meshes as its triangles, all others as user geometry that they intersect
+// themselves, in double. A geometry's number is its shape's index in Scene::shapes.
 
 #pragma once
 
@@ -16,8 +16,8 @@ struct EmbreeScene {
     EmbreeScene& operator=(const EmbreeScene&) = delete;
     ~EmbreeScene();
 
-    RTCScene scene = nullptr;                          ///< holds its device
-    std::vector<std::variant<Sphere, Disk>> analytic;  ///< what user geometries point to; fixed once built
+    RTCScene scene = nullptr;        ///< holds its device
+    std::vector<Analytic> analytic;  ///< what user geometries point to; fixed once built
 };
 
 /// Hands the shapes to Embree. Throws std::bad_alloc when memory does not suffice, and std::runtime_error when Embree

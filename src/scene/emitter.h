@@ -22,18 +22,9 @@ struct EmissionSample {
                    ///< its mean over samples and channels is 1
 };
 
-/// Emits from `emitter`: position uniform on its area, direction by the cosine (area light) or uniform (point light).
+/// Emits from `emitter`, by its power.
 EmissionSample sample_emission(const Scene& scene, std::uint32_t emitter, const Imath::V2f& u_position,
                                double u_triangle, const Imath::V2f& u_direction);
-
-/// A point on an emitter as seen from a receiver.
-struct DirectSample {
-    Vector position;   ///< on the emitter, already moved off its surface towards the receiver
-    Vector direction;  ///< unit, from the receiver to `position`
-    ColorD radiance;   ///< area light: radiance towards the receiver. Point light: intensity / distance^2
-    double density;    ///< per steradian at the receiver, without the choice of light; 1 for a point light
-    bool is_delta;     ///< a point light: no other technique can find it
-};
 
 /// Draws a point on `emitter` to light `receiver`: spheres by the solid angle of their visible cap, other shapes
 /// uniform in area. Empty when the point drawn does not face the receiver.

@@ -15,11 +15,12 @@
 #include "core/error.h"
 #include "core/hash.h"
 #include "core/text.h"
+#include "scene/emitters/light_reader.h"
 #include "scene/materials/material_reader.h"
 #include "scene/mitsuba/properties.h"
 #include "scene/mitsuba/transform.h"
 #include "scene/mitsuba/xml_reader.h"
-#include "scene/shape_reader.h"
+#include "scene/shapes/shape_reader.h"
 
 namespace photonlab {
 
@@ -27,7 +28,8 @@ namespace {
 
 class Loader {
 public:
-    explicit Loader(SceneDescription& scene, std::string& bytes_read) : scene_(scene), bytes_read_(bytes_read) {}
+    Loader(SceneDescription& scene, const std::filesystem::path& folder, std::string& bytes_read)
+        : scene_(scene), folder_(folder.string() + "/"), bytes_read_(bytes_read) {}
 
     void load(const XmlElement& root) {
         look_through(root);
@@ -41,7 +43,7 @@ public:
             } else if (element.tag == "shape") {
                 add_shape(element);
             } else if (element.tag == "emitter") {
-                if (!is_for_shapes(element)) add_point_light(element);
+                if (!is_for_shapes(element)) scene_.lights.push_back(read_scene_light(element, source()));
             } else if (element.tag == "integrator") {
                 read_integrator(element);
                 has_integrator = true;
@@ -77,10 +79,12 @@ private:
                                                     element.attribute("type"), known));
     }
 
-    /// Notes are recorded with every run: as text, of bounded length, each once.
+    /// Notes are recorded with every run: as text, of bounded length, each once, with files named as from the scene's
+    /// folder.
     void note(const std::string& sentence) {
         constexpr std::size_t longest = 500;
         std::string text = valid_text(sentence);
+        for (std::size_t at = 0; (at = text.find(folder_, at)) != text.npos;) text.erase(at, folder_.size());
         if (const std::string_view beginning = first_columns(text, longest); beginning.size() < text.size())
             text = std::string(beginning) + "...";
         if (noted_.insert(text).second) scene_.notes.push_back(text);
@@ -91,8 +95,8 @@ private:
         if (element.tag == "alias") {
             const auto found = by_id_.find(element.require("id"));
             if (found == by_id_.end())
-                throw InputError(element.place,
-                                 fmt::format("alias: nothing before it has the id \"{}\"", element.attribute("id")));
+                throw InputError(element.place, fmt::format("alias: expected the id of something before it, got \"{}\"",
+                                                            element.attribute("id")));
             add_id(element, element.require("as"), *found->second);
         } else if (element.tag != "ref" && !element.attribute("id").empty()) {
             add_id(element, element.attribute("id"), element);
@@ -106,7 +110,9 @@ private:
     void add_id(const XmlElement& where, const std::string& id, const XmlElement& element) {
         const auto [earlier, is_new] = by_id_.emplace(id, &element);
         if (!is_new)
-            throw InputError(where.place, fmt::format("id \"{}\" stands already at {}", id, earlier->second->place));
+            throw InputError(where.place,
+                             fmt::format("expected an id of its own, got \"{}\", which stands already at {}", id,
+                                         earlier->second->place));
     }
 
     /// The plugin itself, or the one that a <ref> names.
@@ -115,7 +121,7 @@ private:
         const std::string& id = element.require("id");
         const auto found = by_id_.find(id);
         if (found == by_id_.end())
-            throw InputError(element.place, fmt::format("nothing in this scene has the id \"{}\"", id));
+            throw InputError(element.place, fmt::format("expected the id of something in this scene, got \"{}\"", id));
         return *found->second;
     }
 
@@ -147,11 +153,12 @@ private:
     // Shapes
 
     void add_shape(const XmlElement& element) {
-        Properties properties(element);
+        const SceneSource around = source();
+        ShapeReader reader(element, around);
         ShapeDescription shape;
         shape.place = element.place;
         const XmlElement* bsdf = nullptr;
-        for (const XmlElement* object : properties.objects()) {
+        for (const XmlElement* object : reader.properties.objects()) {
             const XmlElement& plugin = resolve(*object);
             if (plugin.tag == "bsdf") {
                 require_for_whole_shape(element, *object);
@@ -159,19 +166,17 @@ private:
                 bsdf = &plugin;
             } else if (plugin.tag == "emitter") {
                 if (shape.radiance) throw InputError(object->place, "expected one emitter in a shape, got a second");
-                shape.radiance = read_area_light(plugin);
+                shape.radiance = read_area_light(plugin, around);
+                lights_without_shape_.erase(&plugin);
             } else {
                 throw InputError(object->place,
                                  fmt::format("unexpected <{}> in a shape; known here: bsdf, emitter", plugin.tag));
             }
         }
         shape.material = bsdf ? material_index(*bsdf) : default_material(shape.radiance.has_value());
-        shape.geometry = read_geometry(element, properties,
-                                       {.has_bsdf = bsdf != nullptr,
-                                        .has_texture = !scene_.materials[shape.material].textures.empty(),
-                                        .bytes_read = bytes_read_,
-                                        .note = [this](const std::string& sentence) { note(sentence); }});
-        properties.require_all_known();
+        reader.has_bsdf = bsdf != nullptr;
+        reader.has_texture = !scene_.materials[shape.material].textures.empty();
+        shape.geometry = read_geometry(reader);
         scene_.shapes.push_back(std::move(shape));
     }
 
@@ -200,52 +205,10 @@ private:
     // -----------------------------------------------------------------------------------------------------------------
     // Lights
 
-    static ColorD read_light(Properties& properties, const std::string& name, const ColorD& missing) {
-        const ColorD light = properties.emission(name).value_or(missing);
-        if (std::min({light.x, light.y, light.z}) < 0.0)
-            throw InputError(properties.place_of(name), fmt::format("{}: expected values of at least 0, got {} {} {}",
-                                                                    name, light.x, light.y, light.z));
-        return light;
-    }
-
-    /// How often a light is chosen, which changes the noise of an image and not what it shows.
-    void read_sampling_weight(Properties& properties) {
-        const auto weight = properties.number("sampling_weight");
-        if (!weight) return;
-        if (!(*weight > 0.0))
-            throw InputError(properties.place_of("sampling_weight"),
-                             fmt::format("sampling_weight: expected a number above 0, got {}", *weight));
-        note("sampling_weight of emitters: not read; they are chosen by their power");
-    }
-
-    ColorD read_area_light(const XmlElement& element) {
-        if (element.require("type") != "area") fail_unknown(element, "area (in a shape), point (in the scene)");
-        lights_without_shape_.erase(&element);
-        Properties properties(element);
-        const ColorD radiance = read_light(properties, "radiance", ColorD(1.0));
-        read_sampling_weight(properties);
-        properties.require_all_known();
-        return radiance;
-    }
-
     /// An area light in the scene itself, which shapes before it or behind it name by its id.
     static bool is_for_shapes(const XmlElement& element) {
-        return element.tag == "emitter" && element.attribute("type") == "area" && !element.attribute("id").empty();
-    }
-
-    void add_point_light(const XmlElement& element) {
-        if (element.require("type") != "point") fail_unknown(element, "area (in a shape), point (in the scene)");
-        Properties properties(element);
-        PointLightDescription light;
-        light.place = element.place;
-        const auto position = properties.vector("position");
-        const auto to_world = properties.transform("to_world");
-        if (position && to_world) throw InputError(element.place, "point: expected position or to_world, got both");
-        light.position = position ? *position : transform_point(to_world.value_or(Matrix()), VectorD(0.0));
-        light.intensity = read_light(properties, "intensity", ColorD(1.0));
-        read_sampling_weight(properties);
-        properties.require_all_known();
-        scene_.point_lights.push_back(light);
+        return element.tag == "emitter" && element.attribute("type") == AreaLight::name &&
+               !element.attribute("id").empty();
     }
 
     // -----------------------------------------------------------------------------------------------------------------
@@ -372,17 +335,19 @@ private:
         const VectorD forward = VectorD(camera[2][0], camera[2][1], camera[2][2]).normalized();
         bool is_too_near = false;
         bool is_too_far = false;
-        const auto look_at = [&](const VectorD& point, double radius) {
-            const double depth = (point - position).dot(forward);
-            is_too_near = is_too_near || (radius == 0.0 && depth > 0.0 && depth < near_clip_);
-            is_too_far = is_too_far || depth + radius > far_clip_;
-        };
         for (const ShapeDescription& shape : scene_.shapes) {
-            if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry))
-                for (const VectorD& vertex : mesh->positions) look_at(vertex, 0.0);
-            if (const auto* sphere = std::get_if<SphereDescription>(&shape.geometry))
-                look_at(sphere->centre, sphere->radius);
-            if (const auto* disk = std::get_if<DiskDescription>(&shape.geometry)) look_at(disk->centre, disk->radius);
+            if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry)) {
+                for (const VectorD& vertex : mesh->positions) {
+                    const double depth = (vertex - position).dot(forward);
+                    is_too_near = is_too_near || (depth > 0.0 && depth < near_clip_);
+                    is_too_far = is_too_far || depth > far_clip_;
+                }
+            } else {
+                const Bounds bounds = bounds_of(shape.geometry);
+                const VectorD size = bounds.upper - bounds.lower;
+                const double depth = ((bounds.lower + bounds.upper) * 0.5 - position).dot(forward);
+                is_too_far = is_too_far || depth + 0.5 * std::max({size.x, size.y, size.z}) > far_clip_;
+            }
         }
         if (is_too_near)
             note(fmt::format("near_clip {:g}: what is nearer to the camera is shown all the same", near_clip_));
@@ -391,6 +356,7 @@ private:
     }
 
     SceneDescription& scene_;
+    const std::string folder_;  // of the scene, as it stands before names of files
     std::string& bytes_read_;
     std::set<std::string> noted_;  // scene_.notes
     double near_clip_ = 1e-2;      // of the camera
@@ -411,7 +377,7 @@ SceneDescription load_scene_file(const std::filesystem::path& file,
     std::string bytes_read;
     const XmlElement root = read_scene_xml(file, parameters, bytes_read);
     for (const auto& [name, value] : parameters) bytes_read += fmt::format("\n{}={}", name, value);
-    Loader(scene, bytes_read).load(root);
+    Loader(scene, file.parent_path(), bytes_read).load(root);
 
     scene.hash = hash_text(bytes_read);
     const std::filesystem::path absolute = std::filesystem::absolute(file);

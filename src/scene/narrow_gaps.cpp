@@ -56,25 +56,9 @@ void for_each_probe(const TriangleMesh& mesh, std::uint32_t shape, std::size_t i
         use({shape, static_cast<std::uint32_t>(i), Vector(point), mesh.geometric_normals[i]});
 }
 
-template <typename Use>
-void for_each_probe(const Sphere& sphere, std::uint32_t shape, std::size_t, const Use& use) {
-    // Not along the axes, where spheres rest on floors: a single point of contact does no harm.
-    for (const float x : {-1.0f, 1.0f})
-        for (const float y : {-1.0f, 1.0f})
-            for (const float z : {-1.0f, 1.0f}) {
-                const Vector outward = Vector(x, 0.9f * y, 0.8f * z).normalized();
-                use({shape, 0, sphere.centre + outward * sphere.radius, outward});
-            }
-}
-
-template <typename Use>
-void for_each_probe(const Disk& disk, std::uint32_t shape, std::size_t, const Use& use) {
-    // Not the centre, where balls rest.
-    for (const auto& [x, y] : {std::pair(0.1f, 0.2f), std::pair(0.7f, 0.1f), std::pair(-0.7f, 0.2f),
-                               std::pair(0.2f, 0.7f), std::pair(-0.1f, -0.7f)}) {
-        const Vector offset = disk.frame.tangent * (x * disk.radius) + disk.frame.bitangent * (y * disk.radius);
-        use({shape, 0, disk.centre + offset, disk.frame.normal});
-    }
+template <AnalyticKind Kind, typename Use>
+void for_each_probe(const Kind& kind, std::uint32_t shape, std::size_t, const Use& use) {
+    for (const SurfacePoint& point : kind.probes()) use({shape, 0, point.position, point.normal});
 }
 
 std::size_t primitive_count(const Shape& shape) {
@@ -96,15 +80,18 @@ void for_each_primitive(const Scene& scene, std::size_t stride, const Use& use) 
 using Box = Imath::Box<Vector>;
 
 Box box_of(const Shape& shape, std::size_t primitive) {
-    const auto around = [](const Vector& centre, float radius) {
-        return Box(centre - Vector(radius), centre + Vector(radius));
-    };
-    if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) return around(sphere->centre, sphere->radius);
-    if (const auto* disk = std::get_if<Disk>(&shape.geometry)) return around(disk->centre, disk->radius);
-    Box box;
-    for (const VectorD& corner : corners(std::get<TriangleMesh>(shape.geometry), primitive))
-        box.extendBy(Vector(corner));
-    return box;
+    return std::visit(
+        [&]<typename Kind>(const Kind& kind) {
+            Box box;
+            if constexpr (AnalyticKind<Kind>) {
+                const Extent extent = kind.extent();
+                box = Box(extent.centre - extent.reach, extent.centre + extent.reach);
+            } else {
+                for (const VectorD& corner : corners(kind, primitive)) box.extendBy(Vector(corner));
+            }
+            return box;
+        },
+        shape.geometry);
 }
 
 /// How many primitives' boxes are around a point of a surface, in the mean: an estimate from some of both.

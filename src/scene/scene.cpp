@@ -19,35 +19,6 @@ namespace photonlab {
 
 namespace {
 
-struct Bounds {
-    VectorD lower = VectorD(std::numeric_limits<double>::infinity());
-    VectorD upper = VectorD(-std::numeric_limits<double>::infinity());
-
-    void include(const VectorD& point) {
-        for (int axis = 0; axis < 3; ++axis) {
-            lower[axis] = std::min(lower[axis], point[axis]);
-            upper[axis] = std::max(upper[axis], point[axis]);
-        }
-    }
-    bool is_empty() const { return lower.x > upper.x; }
-};
-
-void include_shape(Bounds& bounds, const ShapeDescription& shape) {
-    if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry)) {
-        for (const VectorD& position : mesh->positions) bounds.include(position);
-    } else if (const auto* sphere = std::get_if<SphereDescription>(&shape.geometry)) {
-        bounds.include(sphere->centre - VectorD(sphere->radius));
-        bounds.include(sphere->centre + VectorD(sphere->radius));
-    } else {
-        const auto& disk = std::get<DiskDescription>(shape.geometry);
-        VectorD reach;
-        for (int axis = 0; axis < 3; ++axis)
-            reach[axis] = disk.radius * std::sqrt(std::max(0.0, 1.0 - disk.normal[axis] * disk.normal[axis]));
-        bounds.include(disk.centre - reach);
-        bounds.include(disk.centre + reach);
-    }
-}
-
 // ---------------------------------------------------------------------------------------------------------------------
 // What cannot be rendered is refused here, whether it came from a file or from a program.
 
@@ -57,72 +28,25 @@ void include_shape(Bounds& bounds, const ShapeDescription& shape) {
     throw InputError(place, message);
 }
 
-void require_light(const ColorD& light, const std::string& place, std::string_view what) {
-    if (!is_finite(light) || light.x < 0.0 || light.y < 0.0 || light.z < 0.0)
-        throw InputError(place, fmt::format("{}: expected finite values of at least 0, got {} {} {}", what, light.x,
-                                            light.y, light.z));
-}
-
-void require_mesh(const MeshDescription& mesh, const std::string& place) {
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
-        if (!is_finite(mesh.positions[i])) throw InputError(place, fmt::format("vertex {} is not finite", i + 1));
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-        const auto& triangle = mesh.triangles[i];
-        if (std::max({triangle.x, triangle.y, triangle.z}) >= mesh.positions.size())
-            throw InputError(place, fmt::format("triangle {}: expected vertices below {}, got {} {} {}", i + 1,
-                                                mesh.positions.size(), triangle.x, triangle.y, triangle.z));
-    }
-    if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size())
-        throw InputError(place, fmt::format("expected a normal for each of {} vertices, got {}", mesh.positions.size(),
-                                            mesh.normals.size()));
-    if (!mesh.texture_coordinates.empty() && mesh.texture_coordinates.size() != mesh.positions.size())
-        throw InputError(place, fmt::format("expected texture coordinates for each of {} vertices, got {}",
-                                            mesh.positions.size(), mesh.texture_coordinates.size()));
-    for (std::size_t i = 0; i < mesh.normals.size(); ++i)
-        if (!is_finite(mesh.normals[i])) throw InputError(place, fmt::format("normal {} is not finite", i + 1));
-    for (std::size_t i = 0; i < mesh.texture_coordinates.size(); ++i)
-        if (!std::isfinite(mesh.texture_coordinates[i].x) || !std::isfinite(mesh.texture_coordinates[i].y))
-            throw InputError(place, fmt::format("texture coordinates {} are not finite", i + 1));
-}
-
 void require_valid(const SceneDescription& description) {
     for (const Material& material : description.materials) require_valid(material);
     for (const ShapeDescription& shape : description.shapes) {
         if (shape.material >= description.materials.size())
             throw InputError(shape.place,
                              fmt::format("material {} of {}", shape.material, description.materials.size()));
-        if (shape.radiance) require_light(*shape.radiance, shape.place, "radiance");
-        if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry)) require_mesh(*mesh, shape.place);
-        const auto require_round = [&](const VectorD& centre, double radius) {
-            if (!is_finite(centre) || !std::isfinite(radius) || !(radius > 0.0))
-                throw InputError(shape.place,
-                                 fmt::format("expected a finite centre and a radius above 0, got radius {}", radius));
-        };
-        if (const auto* sphere = std::get_if<SphereDescription>(&shape.geometry))
-            require_round(sphere->centre, sphere->radius);
-        if (const auto* disk = std::get_if<DiskDescription>(&shape.geometry)) {
-            require_round(disk->centre, disk->radius);
-            if (!is_finite(disk->normal) || disk->normal.length2() == 0.0)
-                throw InputError(shape.place, "expected a disk's normal of unit length");
-        }
+        if (shape.radiance) AreaLight::check(*shape.radiance, shape.place);
+        require_valid(shape.geometry, shape.place);
     }
-    for (const PointLightDescription& light : description.point_lights) {
-        require_light(light.intensity, light.place, "intensity");
-        if (!is_finite(light.position)) throw InputError(light.place, "position is not finite");
-    }
+    for (const LightDescription& light : description.lights) require_valid(light);
+}
+
+void include(Bounds& bounds, const Bounds& other) {
+    if (other.is_empty()) return;
+    bounds.include(other.lower);
+    bounds.include(other.upper);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
-
-/// From scene units to the unit box, in double.
-struct ToUnitBox {
-    VectorD centre;
-    double unit_length;
-
-    VectorD exact(const VectorD& point) const { return (point - centre) / unit_length; }
-    Vector operator()(const VectorD& point) const { return Vector(exact(point)); }
-    float length(double scene_units) const { return static_cast<float>(scene_units / unit_length); }
-};
 
 /// How far apart neighbouring doubles are at the farthest coordinate of the box, as a share of its size: where things
 /// are in the scene cannot be said any better.
@@ -159,74 +83,16 @@ ToUnitBox make_unit_box(const Bounds& box, const std::string& place) {
 
 /// Where the shape stands that reaches farthest from the origin, or the first light where there is no shape.
 std::string place_of_farthest(const SceneDescription& description) {
-    std::string place = description.point_lights.empty() ? description.name : description.point_lights.front().place;
+    std::string place = description.lights.empty() ? description.name : place_of(description.lights.front());
     double farthest = -1.0;
     for (const ShapeDescription& shape : description.shapes) {
-        Bounds bounds;
-        include_shape(bounds, shape);
+        const Bounds bounds = bounds_of(shape.geometry);
         const double reach = std::max(bounds.lower.length(), bounds.upper.length());
         if (!(reach > farthest)) continue;
         farthest = reach;
         place = shape.place;
     }
     return place;
-}
-
-/// Corners of a triangle, unit box, before they are rounded to float: rounding turns the plane of a sliver.
-std::array<VectorD, 3> corners(const MeshDescription& mesh, std::size_t triangle, const ToUnitBox& to_unit_box) {
-    const auto& vertices = mesh.triangles[triangle];
-    return {to_unit_box.exact(mesh.positions[vertices.x]), to_unit_box.exact(mesh.positions[vertices.y]),
-            to_unit_box.exact(mesh.positions[vertices.z])};
-}
-
-/// Nine numbers that tell two triangles apart, whichever corner they begin with.
-std::array<double, 9> identity_of(std::array<VectorD, 3> triangle) {
-    const auto is_before = [](const VectorD& a, const VectorD& b) {
-        return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
-    };
-    std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end(), is_before), triangle.end());
-    std::array<double, 9> numbers{};
-    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = triangle[i / 3][static_cast<int>(i % 3)];
-    return numbers;
-}
-
-Shape make_shape(const ShapeDescription& description, const ToUnitBox& to_unit_box, bool has_texture) {
-    Shape shape;
-    const auto axes = [&](const TextureAxes& all) { return has_texture ? std::optional(all) : std::nullopt; };
-    shape.material = static_cast<std::uint32_t>(description.material);
-    if (const auto* source = std::get_if<MeshDescription>(&description.geometry)) {
-        TriangleMesh mesh;
-        mesh.triangles = source->triangles;
-        for (const VectorD& position : source->positions) mesh.positions.push_back(to_unit_box(position));
-        for (const VectorD& normal : source->normals) mesh.normals.push_back(Vector(normal));
-        for (const Imath::V2d& uv : source->texture_coordinates)
-            mesh.texture_coordinates.emplace_back(static_cast<float>(uv.x), static_cast<float>(uv.y));
-        shape.area = 0.0;
-        std::set<std::array<double, 9>> shining;  // a triangle that is there twice shines once
-        for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-            const std::array<VectorD, 3> triangle = corners(*source, i, to_unit_box);
-            const VectorD normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
-            mesh.geometric_normals.emplace_back(normal.normalized());
-            if (!description.radiance || shining.insert(identity_of(triangle)).second)
-                shape.area += 0.5 * normal.length();
-            if (description.radiance) shape.triangle_cdf.push_back(shape.area);
-        }
-        if (shape.area > 0.0)
-            for (double& share : shape.triangle_cdf) share /= shape.area;
-        shape.geometry = std::move(mesh);
-    } else if (const auto* sphere = std::get_if<SphereDescription>(&description.geometry)) {
-        const float radius = to_unit_box.length(sphere->radius);
-        shape.geometry = Sphere{to_unit_box(sphere->centre), radius, sphere->flip_normals ? -1.0f : 1.0f,
-                                axes(sphere->texture_axes)};
-        shape.area = 4.0 * pi * radius * radius;
-    } else {
-        const auto& disk = std::get<DiskDescription>(description.geometry);
-        const float radius = to_unit_box.length(disk.radius);
-        shape.geometry =
-            Disk{make_frame(Vector(disk.normal)), to_unit_box(disk.centre), radius, axes(disk.texture_axes)};
-        shape.area = pi * radius * radius;
-    }
-    return shape;
 }
 
 Camera make_camera(const CameraDescription& description, std::optional<Resolution> resolution,
@@ -249,8 +115,8 @@ Camera make_camera(const CameraDescription& description, std::optional<Resolutio
         fail(description.place, "camera: to_world: expected an invertible transform with finite values");
     if (!is_squarable(to_unit_box(position)))  // Embree takes no ray from there
         fail(description.place,
-             fmt::format("camera: position {} {} {} is too far from the scene, which is {} scene units large",
-                         position.x, position.y, position.z, to_unit_box.unit_length));
+             fmt::format("camera: expected a position nearer to the scene, which is {} scene units large, got {} {} {}",
+                         to_unit_box.unit_length, position.x, position.y, position.z));
     const double image_width = 2.0 * std::tan(description.fov_x * pi / 360.0);  // at distance 1
     const double image_height = image_width * height / width;                   // square pixels
     return {.position = to_unit_box(position),
@@ -266,30 +132,20 @@ Camera make_camera(const CameraDescription& description, std::optional<Resolutio
 /// light times a constant changes no choice.
 void add_emitters(Scene& scene, const SceneDescription& description, const ToUnitBox& to_unit_box) {
     std::vector<std::string> places;
+    const auto add = [&](const Light& light, const std::string& place) {
+        const ColorD power = std::visit([&](const auto& kind) { return kind.power(scene.shapes); }, light);
+        if (!(mean_channel(power) > 0.0)) return false;
+        scene.emitters.push_back({light, power, 0.0, 0.0});
+        places.push_back(place);
+        return true;
+    };
     for (std::size_t i = 0; i < description.shapes.size(); ++i) {
-        const std::optional<ColorD>& radiance = description.shapes[i].radiance;
-        Shape& shape = scene.shapes[i];
-        if (!radiance) continue;
-        const ColorD power = *radiance * (pi * shape.area);
-        if (!(mean_channel(power) > 0.0)) continue;
-        shape.emitter = static_cast<std::uint32_t>(scene.emitters.size());
-        scene.emitters.push_back({AreaLight{*radiance, static_cast<std::uint32_t>(i)}, power, 0.0, 0.0});
-        places.push_back(description.shapes[i].place);
+        const ShapeDescription& shape = description.shapes[i];
+        const auto next = static_cast<std::uint32_t>(scene.emitters.size());
+        if (shape.radiance && add(AreaLight{*shape.radiance, static_cast<std::uint32_t>(i)}, shape.place))
+            scene.shapes[i].emitter = next;
     }
-    const double unit_area = to_unit_box.unit_length * to_unit_box.unit_length;
-    for (const PointLightDescription& light : description.point_lights) {
-        const ColorD intensity = light.intensity / unit_area;
-        const Vector position = to_unit_box(light.position);
-        if (!is_squarable(position))
-            throw InputError(
-                light.place,
-                fmt::format("position {} {} {} is too far from the scene, which is {} scene units large",
-                            light.position.x, light.position.y, light.position.z, to_unit_box.unit_length));
-        const ColorD power = intensity * (4.0 * pi);
-        if (!(mean_channel(power) > 0.0)) continue;
-        scene.emitters.push_back({PointLight{intensity, position}, power, 0.0, 0.0});
-        places.push_back(light.place);
-    }
+    for (const LightDescription& light : description.lights) add(place_light(light, to_unit_box), place_of(light));
     for (const Emitter& emitter : scene.emitters) scene.total_power += mean_channel(emitter.power);
     if (!std::isfinite(scene.total_power)) {
         const auto brightest = std::max_element(
@@ -322,10 +178,10 @@ Vector Camera::direction(double x, double y) const {
 Scene build_scene(const SceneDescription& description, std::optional<Resolution> resolution) {
     require_valid(description);
     Bounds bounds;
-    for (const ShapeDescription& shape : description.shapes) include_shape(bounds, shape);
+    for (const ShapeDescription& shape : description.shapes) include(bounds, bounds_of(shape.geometry));
     Bounds box = bounds;
     if (box.is_empty())
-        for (const PointLightDescription& light : description.point_lights) box.include(light.position);
+        for (const LightDescription& light : description.lights) include(box, bounds_of(light));
 
     const ToUnitBox to_unit_box = make_unit_box(box, place_of_farthest(description));
 
@@ -343,8 +199,12 @@ Scene build_scene(const SceneDescription& description, std::optional<Resolution>
     scene.materials = description.materials;
     scene.max_depth = description.max_depth;
     if (!bounds.is_empty()) scene.bounding_radius = to_unit_box.length(0.5 * (bounds.upper - bounds.lower).length());
-    for (const ShapeDescription& shape : description.shapes)
-        scene.shapes.push_back(make_shape(shape, to_unit_box, !scene.materials[shape.material].textures.empty()));
+    for (const ShapeDescription& shape : description.shapes) {
+        scene.shapes.push_back(place_shape(
+            shape.geometry, to_unit_box,
+            {.emits = shape.radiance.has_value(), .has_texture = !scene.materials[shape.material].textures.empty()}));
+        scene.shapes.back().material = static_cast<std::uint32_t>(shape.material);
+    }
     add_emitters(scene, description, to_unit_box);
     scene.camera = make_camera(description.camera, resolution, to_unit_box);
     scene.embree = build_embree_scene(scene.shapes);
@@ -352,69 +212,6 @@ Scene build_scene(const SceneDescription& description, std::optional<Resolution>
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
-
-namespace {
-
-/// Completes a hit on a triangle. The position comes from the vertices, which is more accurate than origin + t
-/// direction.
-void complete(Hit& hit, const TriangleMesh& mesh, const Ray& ray, float u, float v) {
-    const auto& triangle = mesh.triangles[hit.primitive];
-    const float w = 1.0f - u - v;
-    const Vector& a = mesh.positions[triangle.x];
-    const Vector& b = mesh.positions[triangle.y];
-    const Vector& c = mesh.positions[triangle.z];
-    hit.position = a * w + b * u + c * v;
-    hit.geometric_normal = mesh.geometric_normals[hit.primitive];
-    // A triangle without area has no normal of its own; facing the ray is as good as any.
-    if (hit.geometric_normal == Vector(0.0f)) hit.geometric_normal = -ray.direction;
-    hit.shading_normal = hit.geometric_normal;
-    if (!mesh.normals.empty()) {
-        const VectorD interpolated = VectorD(mesh.normals[triangle.x]) * w + VectorD(mesh.normals[triangle.y]) * u +
-                                     VectorD(mesh.normals[triangle.z]) * v;
-        if (interpolated.length2() > 0.0) {
-            hit.shading_normal = Vector(interpolated.normalized());
-            if (hit.shading_normal.dot(hit.geometric_normal) < 0.0f) hit.shading_normal = -hit.shading_normal;
-        }
-    }
-    if (!mesh.texture_coordinates.empty())
-        hit.texture_coordinate = mesh.texture_coordinates[triangle.x] * w + mesh.texture_coordinates[triangle.y] * u +
-                                 mesh.texture_coordinates[triangle.z] * v;
-    else
-        hit.texture_coordinate = Imath::V2f(u, v);
-}
-
-/// The angle from (1, 0) to (x, y), as a share of the circle, in [0, 1].
-double turn_to(double x, double y) {
-    const double angle = std::atan2(y, x) / (2.0 * pi);
-    return angle < 0.0 ? angle + 1.0 : angle;
-}
-
-void complete(Hit& hit, const Sphere& sphere, const Ray& ray, float, float) {
-    const VectorD centre(sphere.centre);
-    const VectorD outward = (VectorD(ray.origin) + VectorD(ray.direction) * hit.distance - centre).normalized();
-    hit.position = Vector(centre + outward * sphere.radius);
-    hit.geometric_normal = Vector(outward) * sphere.orientation;
-    hit.shading_normal = hit.geometric_normal;
-    if (!sphere.texture_axes) return;
-    const auto& [x, y, z] = *sphere.texture_axes;
-    const double from_pole = std::acos(std::clamp(outward.dot(z), -1.0, 1.0)) / pi;
-    hit.texture_coordinate = Imath::V2f(Imath::V2d(turn_to(outward.dot(x), outward.dot(y)), from_pole));
-}
-
-void complete(Hit& hit, const Disk& disk, const Ray& ray, float, float) {
-    const VectorD normal(disk.frame.normal);
-    const VectorD centre(disk.centre);
-    const VectorD position = VectorD(ray.origin) + VectorD(ray.direction) * hit.distance;
-    hit.position = Vector(position - normal * (position - centre).dot(normal));
-    hit.geometric_normal = disk.frame.normal;
-    hit.shading_normal = disk.frame.normal;
-    if (!disk.texture_axes) return;
-    const double x = (position - centre).dot((*disk.texture_axes)[0]) / disk.radius;
-    const double y = (position - centre).dot((*disk.texture_axes)[1]) / disk.radius;
-    hit.texture_coordinate = Imath::V2f(Imath::V2d(std::hypot(x, y), turn_to(x, y)));
-}
-
-}  // namespace
 
 std::optional<Hit> intersect(const Scene& scene, const Ray& ray) {
     RTCRayHit query{};
@@ -437,8 +234,7 @@ std::optional<Hit> intersect(const Scene& scene, const Ray& ray) {
     hit.distance = query.ray.tfar;
     hit.shape = query.hit.geomID;
     hit.primitive = query.hit.primID;
-    std::visit([&](const auto& geometry) { complete(hit, geometry, ray, query.hit.u, query.hit.v); },
-               scene.shapes[hit.shape].geometry);
+    complete(hit, scene.shapes[hit.shape], ray, query.hit.u, query.hit.v);
     return found;
 }
 

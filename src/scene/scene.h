@@ -11,65 +11,12 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "core/math.h"
 #include "scene/description.h"
-#include "scene/materials/material.h"
 
 namespace photonlab {
-
-inline constexpr std::uint32_t no_emitter = ~0u;
-
-struct TriangleMesh {
-    std::vector<Vector> positions;
-    std::vector<Vector> normals;                  ///< shading normals, one a vertex, or empty
-    std::vector<Imath::V2f> texture_coordinates;  ///< one a vertex; empty: barycentric
-    std::vector<Imath::Vec3<std::uint32_t>> triangles;
-    std::vector<Vector> geometric_normals;  ///< unit, one a triangle; 0 for a triangle without area
-};
-
-struct Sphere {
-    Vector centre;
-    float radius;
-    float orientation;                        ///< +1: the normal points outwards; -1: to the centre
-    std::optional<TextureAxes> texture_axes;  ///< where its material has a texture
-};
-
-struct Disk {
-    Frame frame;  ///< its normal is the disk's
-    Vector centre;
-    float radius;
-    std::optional<TextureAxes> texture_axes;  ///< where its material has a texture
-};
-
-struct Shape {
-    std::variant<TriangleMesh, Sphere, Disk> geometry;
-    std::uint32_t material;
-    std::uint32_t emitter = no_emitter;  ///< index into Scene::emitters
-    double area;                         ///< surface area
-    std::vector<double> triangle_cdf;    ///< meshes that emit: running share of the area, last is 1
-};
-
-/// Emits `radiance` from every point of its shape, to the side of the normal.
-struct AreaLight {
-    ColorD radiance;
-    std::uint32_t shape;
-};
-
-struct PointLight {
-    ColorD intensity;  ///< power per steradian, in this file's unit of power
-    Vector position;
-};
-
-struct Emitter {
-    std::variant<AreaLight, PointLight> kind;
-    ColorD power;                      ///< of the whole emitter
-    double choice_probability;         ///< with which lights are chosen by power: mean_channel(power) / total
-    double choice_cdf;                 ///< running sum of choice_probability, the last emitter's is 1
-    Color photon_power = Color(0.0f);  ///< what a photon starts with: power / (choice_probability * total_power)
-};
 
 /// Pinhole camera: the ray through (x, y) in pixels, y down, leaves `position` in direction
 /// forward + right * (x/width - 1/2) + down * (y/height - 1/2), to be normalised.
@@ -83,22 +30,6 @@ struct Camera {
     double pixel_angle;  ///< angle that a central pixel is wide, radians; of small angles: its width at distance 1
 
     Vector direction(double x, double y) const;  ///< unit
-};
-
-struct Ray {
-    Vector origin;
-    Vector direction;  ///< unit
-};
-
-/// Where a ray meets a surface.
-struct Hit {
-    Vector position;
-    Vector geometric_normal;  ///< unit, to the shape's outside, whichever side was hit
-    Vector shading_normal;    ///< unit, interpolated; on the same side as the geometric normal
-    Imath::V2f texture_coordinate = Imath::V2f(0.0f);
-    float distance;
-    std::uint32_t shape;
-    std::uint32_t primitive;  ///< triangle of a mesh, else 0
 };
 
 struct EmbreeScene;  // owns the device and the scene of Embree

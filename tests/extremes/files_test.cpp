@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "scene/loader.h"
+#include "scene/shapes/obj.h"
 #include "tests/statistical/rendering.h"
 #include "tests/statistical/scenes.h"
 

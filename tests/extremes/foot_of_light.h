@@ -36,7 +36,7 @@ struct FootOfLight {
                        .texture_coordinates = {},
                        .triangles = {{0, 1, 2}}},
                       1));
-        scene.point_lights = {point_light(VectorD(0.0, floor_level + height, 0.0), ColorD(intensity))};
+        scene.lights = {point_light(VectorD(0.0, floor_level + height, 0.0), ColorD(intensity))};
         // From the side, below the light, so that nothing is in between.
         scene.camera = look_at(VectorD(0.4, floor_level + 0.1, 0.3), foot);
         return scene;

@@ -29,7 +29,7 @@ SceneDescription floor_description() {
     SceneDescription scene;
     scene.materials = {diffuse(Color(1.0f, 0.5f, 0.25f))};
     scene.shapes = {shape(parallelogram(VectorD(-0.5, -0.5, 0.0), VectorD(1, 0, 0), VectorD(0, 1, 0)), 0)};
-    scene.point_lights = {point_light(VectorD(0.0, 0.0, 0.3), ColorD(1.0))};
+    scene.lights = {point_light(VectorD(0.0, 0.0, 0.3), ColorD(1.0))};
     scene.camera = look_at(VectorD(0.0, 0.0, 1.0), VectorD(0.0));
     return scene;
 }

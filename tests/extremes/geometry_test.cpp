@@ -29,7 +29,8 @@ SceneDescription changed(SceneDescription scene, double unit, const VectorD& off
             disk->radius *= unit;
         }
     }
-    for (PointLightDescription& lamp : scene.point_lights) {
+    for (LightDescription& light_of_scene : scene.lights) {
+        auto& lamp = std::get<PointLightDescription>(light_of_scene);
         lamp.position = lamp.position * unit + offset;
         lamp.intensity *= light * unit * unit;
     }
@@ -123,7 +124,7 @@ SceneDescription lit_sheet(double thickness, bool lit_from_below, bool seen_from
                     shape(parallelogram(VectorD(-0.5, lower, -0.5), VectorD(1, 0, 0), VectorD(0, 0, 1)), 1),
                     disk(VectorD(0.0, -0.5, 0.0), VectorD(0, 1, 0), 0.01, 2),
                     disk(VectorD(0.0, 0.5, 0.0), VectorD(0, -1, 0), 0.01, 2)};
-    scene.point_lights = {point_light(VectorD(0.0, lit_from_below ? lower - 0.25 : level + 0.25, 0.0), ColorD(1.0))};
+    scene.lights = {point_light(VectorD(0.0, lit_from_below ? lower - 0.25 : level + 0.25, 0.0), ColorD(1.0))};
     scene.camera = seen_from_below ? look_at(VectorD(0.2, lower - 0.2, 0.1), VectorD(0.0, lower, 0.0))
                                    : look_at(VectorD(0.2, level + 0.2, 0.1), VectorD(0.0, level, 0.0));
     return scene;
@@ -151,7 +152,7 @@ TEST(ThinSheet, OfGlassLetsThroughWhatAThickOneDoes) {
             shape(parallelogram(VectorD(-0.5, -0.5, -0.5), VectorD(0, 0, 1), VectorD(1, 0, 0)), 0),
             shape(parallelogram(VectorD(-0.5, 0.25, -0.5), VectorD(0, 0, 1), VectorD(1, 0, 0)), 1),
             shape(parallelogram(VectorD(-0.5, 0.25 - thickness, -0.5), VectorD(1, 0, 0), VectorD(0, 0, 1)), 1)};
-        scene.point_lights = {point_light(VectorD(0.0, 0.5, 0.0), ColorD(1.0))};
+        scene.lights = {point_light(VectorD(0.0, 0.5, 0.0), ColorD(1.0))};
         double power = 0.0;
         for (const Photon& photon : trace_photons(build_scene(scene), {.paths = 100'000}, 1, 1).photons)
             if (photon.edges >= 3) power += photon.power.x;
@@ -215,7 +216,7 @@ struct TiltedFloor {
         SceneDescription scene;
         scene.materials = {diffuse(Color(0.5f))};
         scene.shapes = {shape(std::move(floor), 0)};
-        scene.point_lights = {point_light(centre + normal * height, ColorD(1.0))};
+        scene.lights = {point_light(centre + normal * height, ColorD(1.0))};
         scene.camera = look_at(centre + normal * 0.2 + first * 0.1, centre);
         return scene;
     }

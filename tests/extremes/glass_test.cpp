@@ -182,7 +182,7 @@ TEST(GrazingIncidence, OfLightOnAFloorHasItsCosine) {
         const double height = std::ldexp(1.0, exponent);
         FootOfLight scene{.height = height, .floor_radius = 0.45};
         SceneDescription description = scene.description();
-        description.point_lights[0].position.x = distance;
+        std::get<PointLightDescription>(description.lights[0]).position.x = distance;
         const Scene built = build_scene(description);
         const Image image = render(built, {.max_depth = 2, .photons_per_pass = 1}, {.passes = 1}).image;
         const double expected = 3.0 * height / std::pow(height * height + distance * distance, 1.5) * 0.5 / pi;
@@ -283,7 +283,7 @@ TEST(CameraInsideGlass, SeesTheSquareOfTheIndexTimesTheLight) {
 // again with each reflection at the slab's faces: n^2 / (1 + R) in all.
 TEST(CameraInsideGlass, SeesAFloorThroughTheSlabItIsIn) {
     SceneDescription scene = FootOfLight{.height = 0.1}.description();
-    scene.point_lights[0].position += VectorD(0.05, 0.0, 0.0);
+    std::get<PointLightDescription>(scene.lights[0]).position += VectorD(0.05, 0.0, 0.0);
     scene.materials.push_back(glass(1.5f));
     const VectorD x(0.8, 0, 0);
     const VectorD z(0, 0, 0.8);

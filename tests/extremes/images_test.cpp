@@ -139,11 +139,11 @@ TEST(PlainScene, WithALightAndASurfaceIsNone) {
 
 TEST(PlainScene, WithoutLightIsBlack) {
     SceneDescription scene = foot_seen_by(5, 4, 10.0);
-    scene.point_lights.clear();
+    scene.lights.clear();
     expect_black(scene, "no light");
     EXPECT_EQ(reasons_of(scene), std::vector{no_light});
     // Light without power is none.
-    scene.point_lights = {point_light(VectorD(0.0), ColorD(0.0))};
+    scene.lights = {point_light(VectorD(0.0), ColorD(0.0))};
     scene.shapes[0].radiance = ColorD(0.0);
     expect_black(scene, "no power");
     EXPECT_EQ(reasons_of(scene), std::vector{no_light});
@@ -154,7 +154,7 @@ TEST(PlainScene, WithoutASurfaceIsBlack) {
     scene.shapes.clear();
     expect_black(scene, "no surface");
     EXPECT_EQ(reasons_of(scene), std::vector{no_surface});
-    scene.point_lights.clear();
+    scene.lights.clear();
     expect_black(scene, "nothing");
     EXPECT_EQ(reasons_of(scene), (std::vector{no_light, no_surface}));
     // Triangles without area are no surface that anything meets.
@@ -175,7 +175,7 @@ TEST(PlainScene, OfMirrorsAndGlassUnderAPointIsBlack) {
     scene.materials = {{.id = "mirror", .bsdf = Conductor{}}, {.id = "glass", .bsdf = Dielectric{}}};
     scene.shapes = {sphere(VectorD(-1.0, 0.0, 0.0), 0.8, false, 0), sphere(VectorD(1.0, 0.0, 0.0), 0.8, false, 1),
                     disk(VectorD(0.0, -1.0, 0.0), VectorD(0, 1, 0), 4.0, 0)};
-    scene.point_lights = {point_light(VectorD(0.0, 3.0, 0.0), ColorD(5.0))};
+    scene.lights = {point_light(VectorD(0.0, 3.0, 0.0), ColorD(5.0))};
     scene.camera = look_at(VectorD(0.0, 1.0, -5.0), VectorD(0.0), 8, 8, 50.0);
     std::vector<MethodSettings> methods = all_methods();
     std::erase_if(methods, [](const MethodSettings& method) { return method.integrator == "path"; });

@@ -19,7 +19,7 @@ constexpr double gather_radius = 0.15;
 /// after at most K reflections (docs/theory.md, section 5; power 4 pi I, area 4 pi R^2).
 SceneDescription lit_sphere(const Color& reflectance) {
     SceneDescription scene = hollow_sphere(reflectance);
-    scene.point_lights = {point_light(VectorD(0.0), ColorD(1.0))};
+    scene.lights = {point_light(VectorD(0.0), ColorD(1.0))};
     return scene;
 }
 
@@ -122,7 +122,7 @@ SceneDescription two_rooms(double ratio, bool in_the_weak_one) {
     scene.materials = {diffuse(Color(0.5f))};
     const VectorD centres[] = {{-2.0, 0.0, 0.0}, {2.0, 0.0, 0.0}};
     for (const VectorD& centre : centres) scene.shapes.push_back(sphere(centre, 1.5, true, 0));
-    scene.point_lights = {point_light(centres[0], ColorD(1.0)), point_light(centres[1], ColorD(ratio))};
+    scene.lights = {point_light(centres[0], ColorD(1.0)), point_light(centres[1], ColorD(ratio))};
     const VectorD& seen = centres[in_the_weak_one ? 0 : 1];
     scene.camera = look_at(seen + VectorD(0.1, 0.2, -0.5), seen + VectorD(0.2, -0.3, 1.0), 8, 8, 90.0);
     return scene;

@@ -119,7 +119,7 @@ TEST(Radius, BelowWhatFloatPositionsResolveIsRefused) {
         scaled.shapes.resize(1);
         auto& floor = std::get<DiskDescription>(scaled.shapes[0].geometry);
         floor.radius = 0.5 * unit;
-        scaled.point_lights.clear();
+        scaled.lights.clear();
         const Scene scene = build_scene(scaled);
         const HitPoints hit_points = trace_hit_points(scene, 1, 1);
         const auto make = [&](const MethodSettings& method) { loop_of(method, scene, hit_points); };

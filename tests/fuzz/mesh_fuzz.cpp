@@ -1,6 +1,7 @@
 // OBJ meshes.
 
 #include "scene/loader.h"
+#include "scene/shapes/obj.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace photonlab;

@@ -44,13 +44,14 @@ std::vector<Method> methods(double unit = 1.0) {
 /// The room with a point light beside its lamp, all light times `light`, all lengths times `unit`, moved by `offset`.
 SceneDescription changed_room(double light, double unit = 1.0, const VectorD& offset = VectorD(0.0)) {
     SceneDescription scene = room(resolution, resolution);
-    scene.point_lights = {point_light(VectorD(-0.5, 0.2, -0.6), ColorD(0.5, 1.0, 2.0))};
+    scene.lights = {point_light(VectorD(-0.5, 0.2, -0.6), ColorD(0.5, 1.0, 2.0))};
     for (ShapeDescription& shape : scene.shapes) {
         if (shape.radiance) *shape.radiance *= light;
         for (VectorD& position : std::get<MeshDescription>(shape.geometry).positions)
             position = position * unit + offset;
     }
-    for (PointLightDescription& lamp : scene.point_lights) {
+    for (LightDescription& light_of_scene : scene.lights) {
+        auto& lamp = std::get<PointLightDescription>(light_of_scene);
         lamp.position = lamp.position * unit + offset;
         lamp.intensity *= light * unit * unit;
     }
@@ -187,7 +188,7 @@ TEST(Invariance, DarknessIsBlackAndFinite) {
     SceneDescription no_light = room(resolution, resolution);
     for (ShapeDescription& shape : no_light.shapes) shape.radiance.reset();
     SceneDescription no_surface;
-    no_surface.point_lights = {point_light(VectorD(0.0), ColorD(1.0))};
+    no_surface.lights = {point_light(VectorD(0.0), ColorD(1.0))};
     no_surface.camera = look_at(VectorD(0, 0, -1), VectorD(0.0), 4, 4);
     SceneDescription nothing;
     nothing.camera = no_surface.camera;

@@ -133,7 +133,7 @@ TEST(PhotonMapping, OverPassesIsTheAverageOfItsPasses) {
 TEST(PhotonMapping, GathersNothingThroughAThinWall) {
     SceneDescription description = floor_seen_at_origin(Color(0.5f));
     description.materials[0].two_sided = true;
-    description.point_lights = {point_light(VectorD(0.0, -2.0, 0.0), ColorD(1.0))};
+    description.lights = {point_light(VectorD(0.0, -2.0, 0.0), ColorD(1.0))};
     const Scene scene = build_scene(description);
     for (const char* integrator : {"ppm", "photonmapper"}) {
         const MethodSettings method{

@@ -7,6 +7,7 @@
 
 #include "scene/loader.h"
 #include "scene/scene.h"
+#include "scene/shapes/obj.h"
 #include "tests/mistakes/mistakes.h"
 
 namespace photonlab::test {
@@ -22,6 +23,16 @@ TEST(SceneMistakes, EachGetsItsMessage) {
 
 TEST(MeshMistakes, EachGetsItsMessage) {
     expect_messages("obj", ".obj", 37, [](const std::filesystem::path& file) { load_obj_mesh(file, false); });
+}
+
+TEST(SceneMistakes, EachIsNamedByItsFileAndLine) {
+    for (const std::string kind : {"scene", "obj"})
+        for (const auto& file : files_in(mistakes_folder(kind), kind == "obj" ? ".obj" : ".xml")) {
+            const std::string message = expected_message(file);
+            const std::size_t colon = message.find(':');
+            ASSERT_NE(colon, message.npos) << message;
+            EXPECT_EQ(message.find_first_not_of("0123456789", colon + 1), message.find(": ", colon)) << message;
+        }
 }
 
 const std::string sensor = "<sensor type='perspective'/>";
@@ -44,8 +55,8 @@ TEST(SceneMistakes, FilesThatAreNoTextAreRefusedWithTheirLine) {
     EXPECT_EQ(message("<scene version='3.0.0'>\r\n" + sensor + "\r\n</scene>\r\n"), "no error");
     EXPECT_EQ(message("<scene version='3.0.0'>\r\n\r\n<light/>" + sensor + "</scene>").substr(0, 33),
               "scene.xml:3: unknown element <lig");
-    EXPECT_EQ(message(""), "scene.xml: expected <scene>, got no element");
-    EXPECT_EQ(message(" \n\n"), "scene.xml: expected <scene>, got no element");
+    EXPECT_EQ(message(""), "scene.xml:1: expected <scene>, got no element");
+    EXPECT_EQ(message(" \n\n"), "scene.xml:1: expected <scene>, got no element");
     EXPECT_EQ(message(good + std::string(1, '\0')), "scene.xml:3: expected UTF-8 text, got byte 0x00");
     EXPECT_EQ(message("<scene version='3.0.0'>\n<!-- Stra\xdf"
                       "e -->" +
@@ -61,7 +72,7 @@ TEST(SceneMistakes, FilesThatAreNoTextAreRefusedWithTheirLine) {
          {"\xc0\x80", "\xe0\x80\x80", "\xf0\x80\x80\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xe2\x82", "\x80"})
         EXPECT_EQ(message("<scene version='3.0.0'>\n" + overlong).substr(0, 36),
                   "scene.xml:2: expected UTF-8 text, go");
-    EXPECT_EQ(message(std::string(1'000'000, 'x')).substr(0, 44), "scene.xml: expected <scene>, got no element");
+    EXPECT_EQ(message(std::string(1'000'000, 'x')).substr(0, 46), "scene.xml:1: expected <scene>, got no element");
 }
 
 TEST(SceneMistakes, WhatIsNoFileIsRefusedNotWaitedFor) {
@@ -110,7 +121,7 @@ TEST(SceneMistakes, FilesThatGrowWithoutEndAreRefused) {
     EXPECT_EQ(message("<scene version='3.0.0'>" + repeated("<a>", 1'000'000)).substr(0, 31),
               "scene.xml:1: not well-formed XM");
     EXPECT_EQ(message("<scene version='3.0.0'>" + repeated("<shape type='cube'/>", 1'100'000) + "</scene>"),
-              "scene.xml: expected at most 1000000 elements");
+              "scene.xml:1: expected at most 1000000 elements");
     EXPECT_EQ(message("<scene version='3.0.0'>" + repeated(" ", 33 << 20) + "</scene>"),
               "scene.xml: expected a scene file and what it includes to have at most 33554432 bytes");
     EXPECT_EQ(message("<scene version='3.0.0'>" + sensor + repeated("\n<bsdf type='diffuse'/>", 65'537) + "</scene>"),

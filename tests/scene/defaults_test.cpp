@@ -328,14 +328,18 @@ std::vector<Default> defaults() {
          "0.6 3",
          "point.cpp: D65, which is white",
          "<emitter type='point'/>",
-         [](const SceneDescription& scene) { return numbers(scene.point_lights.at(0).intensity); },
+         [](const SceneDescription& scene) {
+             return numbers(std::get<PointLightDescription>(scene.lights.at(0)).intensity);
+         },
          {1, 1, 1}},
         {"point",
          "position",
          "0.6 3",
          "point.cpp",
          "<emitter type='point'/>",
-         [](const SceneDescription& scene) { return numbers(scene.point_lights.at(0).position); },
+         [](const SceneDescription& scene) {
+             return numbers(std::get<PointLightDescription>(scene.lights.at(0)).position);
+         },
          {0, 0, 0}},
 
         {"perspective",

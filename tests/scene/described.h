@@ -48,7 +48,7 @@ inline SceneDescription describe(std::vector<ShapeDescription> shapes, std::vect
     SceneDescription description;
     description.materials = {{.id = "grey", .bsdf = Diffuse{Color(0.5f)}, .two_sided = true}};
     description.shapes = std::move(shapes);
-    description.point_lights = std::move(lights);
+    description.lights.assign(lights.begin(), lights.end());
     return description;
 }
 

@@ -266,7 +266,7 @@ TEST(SampleEmission, StartsUniformInAreaHoweverTheTrianglesDivideIt) {
                       {4, 5, 5}, {2, 3, 4}, {0, 4, 3}, {3, 3, 3}};
     const Scene scene = build_scene(describe({shape(mesh, ColorD(1.0))}));
     EXPECT_NEAR(scene.shapes[0].area, 1.0, 1e-6);
-    EXPECT_EQ(scene.shapes[0].triangle_cdf.back(), 1.0);
+    EXPECT_EQ(std::get<TriangleMesh>(scene.shapes[0].geometry).triangle_cdf.back(), 1.0);
     RandomStream random = test_stream();
     expect_distributed(
         [&] {

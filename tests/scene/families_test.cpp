@@ -57,8 +57,8 @@ TEST_F(FamiliesTest, AnIncludedFileIsOfItsOwnVersion) {
     const auto scene = load_as("3.0.0",
                                "<include filename='old.xml'/><emitter type='point'><spectrum name='intensity' "
                                "value='1'/></emitter>");
-    expect_near(scene.point_lights.at(0).intensity, white, 1e-12);
-    expect_near(scene.point_lights.at(1).intensity, equal_energy, 1e-4);
+    expect_near(std::get<PointLightDescription>(scene.lights.at(0)).intensity, white, 1e-12);
+    expect_near(std::get<PointLightDescription>(scene.lights.at(1)).intensity, equal_energy, 1e-4);
     write("none.xml", "<scene><emitter type='point'/></scene>");
     EXPECT_EQ(message_of("<scene version='3.0.0'><include filename='none.xml'/></scene>").substr(0, 40),
               "none.xml:1: <scene> needs an attribute \"");
@@ -73,7 +73,7 @@ TEST_F(FamiliesTest, ANumberAsASpectrumOfALightIsWhiteIn06AndEqualEnergyIn3) {
     for (const auto& [version, color] : {std::pair("0.6.0", white), std::pair("3.0.0", equal_energy)}) {
         const auto scene = load_as(version, lights);
         expect_near(scene.shapes.at(0).radiance.value(), color * 2.0, 1e-4);
-        expect_near(scene.point_lights.at(0).intensity, color * 2.0, 1e-4);
+        expect_near(std::get<PointLightDescription>(scene.lights.at(0)).intensity, color * 2.0, 1e-4);
     }
 }
 

@@ -2,6 +2,7 @@
 // below gets exactly the message beside it.
 
 #include "scene/loader.h"
+#include "scene/shapes/obj.h"
 
 #include <gtest/gtest.h>
 
@@ -279,7 +280,7 @@ TEST_F(LoaderTest, ASpectrumThatEmitsIsEqualEnergyWhiteAndOneThatReflectsIsGrey)
     const ColorD white(1.20479, 0.94829, 0.90892);  // XYZ (1, 1, 1) in linear sRGB
     for (int channel = 0; channel < 3; ++channel) {
         EXPECT_NEAR((*scene.shapes.at(0).radiance)[channel], 2.0 * white[channel], 2e-3);
-        EXPECT_NEAR(scene.point_lights.at(0).intensity[channel], 2.0 * white[channel], 1e-4);
+        EXPECT_NEAR(std::get<PointLightDescription>(scene.lights.at(0)).intensity[channel], 2.0 * white[channel], 1e-4);
     }
 }
 
@@ -302,9 +303,9 @@ TEST_F(LoaderTest, TheMeasuredRedWallHasItsPublishedRgb) {
         "660:0.638, "
         "664:0.627, 668:0.62, 672:0.63, 676:0.628, 680:0.642, 684:0.639, 688:0.657, 692:0.639, 696:0.635, "
         "700:0.642'/></emitter>");
-    EXPECT_NEAR(scene.point_lights.at(0).intensity.x, 0.569717, 5e-5);
-    EXPECT_NEAR(scene.point_lights.at(0).intensity.y, 0.0430141, 5e-5);
-    EXPECT_NEAR(scene.point_lights.at(0).intensity.z, 0.0443234, 5e-5);
+    EXPECT_NEAR(std::get<PointLightDescription>(scene.lights.at(0)).intensity.x, 0.569717, 5e-5);
+    EXPECT_NEAR(std::get<PointLightDescription>(scene.lights.at(0)).intensity.y, 0.0430141, 5e-5);
+    EXPECT_NEAR(std::get<PointLightDescription>(scene.lights.at(0)).intensity.z, 0.0443234, 5e-5);
 }
 
 TEST_F(LoaderTest, ShapesWithoutABsdfAreGreyAndPointLightsHaveAPlace) {
@@ -316,7 +317,7 @@ TEST_F(LoaderTest, ShapesWithoutABsdfAreGreyAndPointLightsHaveAPlace) {
     const auto& disk = std::get<DiskDescription>(scene.shapes[0].geometry);
     EXPECT_DOUBLE_EQ(disk.radius, 3.0);
     expect_near(disk.centre, {0, 0, 1});
-    expect_near(scene.point_lights.at(0).position, {0, 2, 0});
+    expect_near(std::get<PointLightDescription>(scene.lights.at(0)).position, {0, 2, 0});
 }
 
 TEST_F(LoaderTest, SpheresTakeCentreRadiusAndTransform) {

@@ -13,6 +13,7 @@
 
 #include "core/error.h"
 #include "scene/loader.h"
+#include "scene/shapes/obj.h"
 
 namespace photonlab {
 namespace {

@@ -415,23 +415,31 @@ TEST(BuildScene, RefusesWhatCannotBeRendered) {
               "test:1: material 1 of 1");
     EXPECT_EQ(message(changed([&](Description& d, MeshDescription&) { d.shapes[0].radiance = ColorD(1, -1, 0); })),
               "test:1: radiance: expected finite values of at least 0, got 1 -1 0");
-    EXPECT_EQ(message(changed([&](Description& d, MeshDescription&) { d.point_lights[0].intensity.y = INFINITY; })),
+    EXPECT_EQ(message(changed([&](Description& d, MeshDescription&) {
+                  std::get<PointLightDescription>(d.lights[0]).intensity.y = INFINITY;
+              })),
               "test:2: intensity: expected finite values of at least 0, got 1 inf 1");
-    EXPECT_EQ(message(changed([&](Description& d, MeshDescription&) { d.point_lights[0].position.y = nan; })),
+    EXPECT_EQ(message(changed([&](Description& d, MeshDescription&) {
+                  std::get<PointLightDescription>(d.lights[0]).position.y = nan;
+              })),
               "test:2: position is not finite");
-    EXPECT_EQ(message(changed([&](Description& d, MeshDescription&) { d.point_lights[0].position.y = 1e60; })),
-              "test:2: position 0 1e+60 1 is too far from the scene, which is 8 scene units large");
+    EXPECT_EQ(message(changed([&](Description& d, MeshDescription&) {
+                  std::get<PointLightDescription>(d.lights[0]).position.y = 1e60;
+              })),
+              "test:2: position: expected one nearer to the scene, which is 8 scene units large, got 0 1e+60 1");
     // Floats hold it, but not its square, which Embree needs.
-    EXPECT_EQ(message(changed([&](Description& d, MeshDescription&) { d.point_lights[0].position.y = 1e20; })),
-              "test:2: position 0 1e+20 1 is too far from the scene, which is 8 scene units large");
+    EXPECT_EQ(message(changed([&](Description& d, MeshDescription&) {
+                  std::get<PointLightDescription>(d.lights[0]).position.y = 1e20;
+              })),
+              "test:2: position: expected one nearer to the scene, which is 8 scene units large, got 0 1e+20 1");
     EXPECT_EQ(message(changed([&](Description& d, MeshDescription&) { d.camera.fov_x = 180.0; })),
               "camera: expected a field of view in (0, 180) degrees, got 180");
     EXPECT_EQ(message(changed([&](Description& d, MeshDescription&) { d.camera.to_world[0][1] = nan; })),
               "camera: to_world: expected an invertible transform with finite values");
     EXPECT_EQ(message(changed([&](Description& d, MeshDescription&) { d.camera.to_world[3][2] = -1e60; })),
-              "camera: position 0 0 -1e+60 is too far from the scene, which is 8 scene units large");
+              "camera: expected a position nearer to the scene, which is 8 scene units large, got 0 0 -1e+60");
     EXPECT_EQ(message(changed([&](Description& d, MeshDescription&) { d.camera.to_world[3][2] = -1e20; })),
-              "camera: position 0 0 -1e+20 is too far from the scene, which is 8 scene units large");
+              "camera: expected a position nearer to the scene, which is 8 scene units large, got 0 0 -1e+20");
     EXPECT_EQ(message(changed([](Description&, MeshDescription&) {}), Resolution{0, 5}),
               "resolution: expected at least 1 x 1, got 0 x 5");
     EXPECT_EQ(message(describe({shape(SphereDescription{{0, 0, 0}, -1.0, false})})),

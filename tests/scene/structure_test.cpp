@@ -54,7 +54,7 @@ TEST_F(StructureTest, ALightOfTheSceneShinesFromTheShapeThatNamesIt) {
         const auto scene = load_as("3.0.0", order);
         EXPECT_EQ(scene.shapes.at(0).radiance.value(), ColorD(1, 2, 3));
         EXPECT_TRUE(is_black(scene.materials.at(scene.shapes.at(0).material).bsdf));
-        EXPECT_TRUE(scene.point_lights.empty());
+        EXPECT_TRUE(scene.lights.empty());
     }
 }
 
@@ -113,7 +113,9 @@ TEST_F(StructureTest, SpectraMayBePlugins) {
     EXPECT_EQ(reflectance("<rgb name='reflectance' intent='reflectance' value='0.1 0.2 0.3'/>"),
               Color(0.1f, 0.2f, 0.3f));
     const auto intensity = [&](const std::string& inside) {
-        return load_as("3.0.0", "<emitter type='point'>" + inside + "</emitter>").point_lights.at(0).intensity;
+        return std::get<PointLightDescription>(
+                   load_as("3.0.0", "<emitter type='point'>" + inside + "</emitter>").lights.at(0))
+            .intensity;
     };
     EXPECT_EQ(intensity("<spectrum name='intensity' type='uniform'><float name='value' value='3'/></spectrum>"),
               ColorD(3.0));
@@ -141,6 +143,40 @@ TEST_F(StructureTest, TheDirectIntegratorIsDepthTwo) {
     EXPECT_TRUE(has_note(scene, "integrator \"direct\": read as max_depth 2"));
     EXPECT_TRUE(has_note(load_as("0.6.0", ""), "no integrator: Mitsuba 0.6 would render direct light alone"));
     EXPECT_EQ(load_as("3.0.0", "").notes.size(), 0u);
+}
+
+TEST_F(StructureTest, WhatTellsAnotherProgramHowToRenderIsReadPast) {
+    for (const std::string property : {"<integer name='rr_depth' value='5'/>", "<integer name='rrDepth' value='5'/>",
+                                       "<boolean name='hideEmitters' value='true'/>"}) {
+        const auto scene = load_as(
+            "3.0.0", "<integrator type='path'><integer name='max_depth' value='7'/>" + property + "</integrator>");
+        EXPECT_EQ(scene.max_depth, 7);
+        EXPECT_EQ(scene.notes, std::vector<std::string>{"of integrator \"path\" only max_depth is read"}) << property;
+    }
+}
+
+TEST_F(StructureTest, PointsAndVectorsAreGivenByOneValueOrByThree) {
+    for (const std::string tag : {"point", "vector"})
+        for (const std::string version : {"0.6.0", "3.0.0"})
+            for (const std::string numbers : {"x='1' y='2' z='3'", "value='1, 2, 3'", "value='1 2 3'"}) {
+                const auto scene = load_as(version, "<emitter type='point'><" + tag + " name='position' " + numbers +
+                                                        "/></emitter><shape type='sphere'><" + tag + " name='center' " +
+                                                        numbers + "/></shape>");
+                const VectorD expected(1, 2, 3);
+                EXPECT_EQ(std::get<PointLightDescription>(scene.lights.at(0)).position, expected) << tag << numbers;
+                EXPECT_EQ(std::get<SphereDescription>(scene.shapes.at(0).geometry).centre, expected) << tag << numbers;
+            }
+}
+
+TEST_F(StructureTest, NotesNameFilesAsTheSceneDoes) {
+    write("meshes/empty.obj", "v 0 0 0\n");
+    write("parts/more.xml", "<scene version='0.6.0'>\n<path value='nowhere'/></scene>");
+    const auto scene = load_as("0.6.0",
+                               "<integrator type='path'/><include filename='parts/more.xml'/><shape type='obj'>"
+                               "<string name='filename' value='meshes/empty.obj'/></shape>");
+    EXPECT_TRUE(has_note(scene, "meshes/empty.obj: has no faces"));
+    EXPECT_TRUE(has_note(scene, "parts/more.xml:2: path: there is no folder"));
+    for (const std::string& note : scene.notes) EXPECT_EQ(note.find(folder_.string()), note.npos) << note;
 }
 
 }  // namespace

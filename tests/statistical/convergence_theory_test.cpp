@@ -69,7 +69,7 @@ Values measure() {
     SceneDescription description;
     description.materials = {diffuse(Color(reflectance))};
     description.shapes = {disk(VectorD(0.0), VectorD(0, 1, 0), 30.0, 0)};
-    description.point_lights = {point_light(VectorD(0.0, height, 0.0), ColorD(intensity))};
+    description.lights = {point_light(VectorD(0.0, height, 0.0), ColorD(intensity))};
     description.camera = look_at(VectorD(0.7, 1.0, 0.2), VectorD(0.0));
     const Scene scene = build_scene(description);
     const HitPoints hit_points = trace_hit_points(scene, 1, 1);

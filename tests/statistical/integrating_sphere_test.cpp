@@ -24,7 +24,7 @@ constexpr double sphere_area = 4.0 * pi * sphere_radius * sphere_radius;
 
 SceneDescription describe(const VectorD& lamp, int resolution = 8) {
     SceneDescription scene = hollow_sphere(wall_colour, std::nullopt, resolution);
-    scene.point_lights = {point_light(lamp, lamp_intensity)};
+    scene.lights = {point_light(lamp, lamp_intensity)};
     return scene;
 }
 
@@ -248,7 +248,7 @@ TEST(IntegratingSphere, NearestPhotonsAreUnbiasedForEveryKernelAndSmallNumbers) 
 
 TEST(IntegratingSphere, BlackWallsGatherExactlyNothing) {
     SceneDescription description = hollow_sphere(Color(0.0f));
-    description.point_lights = {point_light(off_centre, lamp_intensity)};
+    description.lights = {point_light(off_centre, lamp_intensity)};
     const Scene scene = build_scene(description);
     for (const char* integrator : {"ppm", "photonmapper", "path"})
         for (const DirectMode direct : {DirectMode::Sampled, DirectMode::Photons}) {
@@ -288,7 +288,7 @@ TEST(IntegratingSphere, PathsLeaveTheExpectedNumberAndPowerOfPhotons) {
 // A white sphere would keep a path for ever; survival of at most 0.99 ends it after 100 edges on average.
 TEST(IntegratingSphere, WhiteWallsEndPathsByTheHighestSurvival) {
     SceneDescription description = hollow_sphere(Color(1.0f));
-    description.point_lights = {point_light(off_centre, ColorD(1.0))};
+    description.lights = {point_light(off_centre, ColorD(1.0))};
     const Scene scene = build_scene(description);
     std::vector<double> stored;
     for (std::uint64_t seed = 1; seed <= 32; ++seed) {

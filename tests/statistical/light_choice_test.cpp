@@ -52,8 +52,8 @@ TEST(LightChoice, PathTracingIsUnbiasedWithPowersAMillionToOne) {
 TEST(LightChoice, SampledAndPhotonDirectLightAreUnbiasedWithPowersAHundredToOne) {
     // The dim lamp hangs a tenth as high: both light the origin alike.
     SceneDescription description = floor_seen_at_origin(floor_colour);
-    description.point_lights = {point_light(VectorD(0.0, 0.4, 0.0), ColorD(0.02, 0.01, 0.0)),
-                                point_light(VectorD(0.0, 4.0, 0.0), ColorD(0.0, 1.0, 2.0))};
+    description.lights = {point_light(VectorD(0.0, 0.4, 0.0), ColorD(0.02, 0.01, 0.0)),
+                          point_light(VectorD(0.0, 4.0, 0.0), ColorD(0.0, 1.0, 2.0))};
     const Scene scene = build_scene(description);
     constexpr double radius = 0.2;
     const auto mean_irradiance = [&](const PointLightDescription& light, int c, double disc) {
@@ -76,8 +76,10 @@ TEST(LightChoice, SampledAndPhotonDirectLightAreUnbiasedWithPowersAHundredToOne)
         }
         for (int c = 0; c < 3; ++c) {
             double expected = 0.0;
-            for (const PointLightDescription& light : description.point_lights)
+            for (const LightDescription& any : description.lights) {
+                const auto& light = std::get<PointLightDescription>(any);
                 expected += floor_colour[c] / pi * mean_irradiance(light, c, by_photons ? radius : 0.0);
+            }
             claims.mean_is(name_of(direct) + ", channel " + std::to_string(c), radiance[c], expected, 0.05);
         }
     }

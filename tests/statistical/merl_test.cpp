@@ -27,7 +27,7 @@ TEST(MeasuredBall, UnderAPointOfLightLooksAsItsFormulaDoes) {
     description.materials = {shiny_material()};
     description.shapes = {sphere(VectorD(0.0), 2.0, false, 0)};
     const VectorD light(5.0, 6.0, 7.0);
-    description.point_lights = {point_light(light, ColorD(100.0, 50.0, 25.0))};
+    description.lights = {point_light(light, ColorD(100.0, 50.0, 25.0))};
     description.camera = look_at({3.0, 1.0, 8.0}, {0.0, 0.0, 0.0}, 48, 48, 20.0);
     const Scene scene = build_scene(description);
     const HitPoints hit_points = trace_hit_points(scene, 1, 1);

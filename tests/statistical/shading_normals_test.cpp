@@ -32,7 +32,7 @@ TEST(ShadingNormals, GatheredDirectLightIsThatOfTheShadingNormal) {
     description.materials = {diffuse(Color(0.6f))};
     description.shapes = {shape(parallelogram(VectorD(-5, 0, -5), VectorD(0, 0, 10), VectorD(10, 0, 0)), 0)};
     lean_normals(description, lean);
-    description.point_lights = {point_light(VectorD(0.0, height, 0.0), ColorD(1.0))};
+    description.lights = {point_light(VectorD(0.0, height, 0.0), ColorD(1.0))};
     description.camera = look_at(VectorD(1.0, 2.0, 0.5), VectorD(0.0));
     const Scene scene = build_scene(description);
 
@@ -57,7 +57,7 @@ TEST(ShadingNormals, GatheredDirectLightIsThatOfTheShadingNormal) {
 TEST(ShadingNormals, PhotonsAndCameraPathsAgreeAfterReflections) {
     SceneDescription description = hollow_cube(Color(0.7f), std::nullopt);
     lean_normals(description, 0.6);
-    description.point_lights = {point_light(VectorD(0.3, 0.4, -0.5), ColorD(1.0))};
+    description.lights = {point_light(VectorD(0.3, 0.4, -0.5), ColorD(1.0))};
     const Scene scene = build_scene(description);
     std::vector<double> paths;
     std::vector<double> photons;

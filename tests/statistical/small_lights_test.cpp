@@ -21,7 +21,7 @@ constexpr double floor_reflectance = 0.6f;
 
 Scene floor_under_lamp() {
     SceneDescription scene = floor_seen_at_origin(floor_colour);
-    scene.point_lights = {point_light(VectorD(0.0, lamp_height, 0.0), lamp_intensity)};
+    scene.lights = {point_light(VectorD(0.0, lamp_height, 0.0), lamp_intensity)};
     return build_scene(scene);
 }
 

@@ -25,8 +25,8 @@ TEST(DirectLight, OfAPointLightHasItsCosineAndSquaredDistance) {
     for (const double angle : {0.0, 0.5, 1.0, 1.4})
         for (const double distance : {0.1, 1.0, 20.0}) {
             SceneDescription description = floor_seen_at_origin(Color(0.2f, 0.5f, 0.8f));
-            description.point_lights = {point_light(
-                VectorD(distance * std::sin(angle), distance * std::cos(angle), 0.0), ColorD(1.0, 2.0, 3.0))};
+            description.lights = {point_light(VectorD(distance * std::sin(angle), distance * std::cos(angle), 0.0),
+                                              ColorD(1.0, 2.0, 3.0))};
             const ColorD radiance = sample_once(build_scene(description));
             for (int c = 0; c < 3; ++c) {
                 const double exact = (0.2 + 0.3 * c) / pi * (c + 1.0) * std::cos(angle) / (distance * distance);
@@ -40,7 +40,7 @@ TEST(DirectLight, FromBehindIsNone) {
     for (const bool two_sided : {false, true}) {
         SceneDescription description = floor_seen_at_origin(Color(0.5f));
         description.materials[0].two_sided = two_sided;
-        description.point_lights = {point_light(VectorD(0.5, -1.0, 0.0), ColorD(1.0))};
+        description.lights = {point_light(VectorD(0.5, -1.0, 0.0), ColorD(1.0))};
         EXPECT_EQ(sample_once(build_scene(description)), ColorD(0.0));
     }
 }
@@ -49,14 +49,14 @@ TEST(DirectLight, OfATwoSidedSurfaceSeenFromBehindIsThatOfItsBack) {
     SceneDescription description = floor_seen_at_origin(Color(0.5f));
     description.materials[0].two_sided = true;
     description.camera = look_at(VectorD(1.0, -2.0, 0.5), VectorD(0.0));
-    description.point_lights = {point_light(VectorD(0.0, -2.0, 0.0), ColorD(1.0))};
+    description.lights = {point_light(VectorD(0.0, -2.0, 0.0), ColorD(1.0))};
     EXPECT_NEAR(sample_once(build_scene(description)).x, 0.5 / pi / 4.0, 1e-6);
 }
 
 TEST(DirectLight, IsBlockedByAnythingBetweenAndNothingBeyond) {
     for (const double height : {0.01, 1.0, 1.99, 2.01, 3.0}) {
         SceneDescription description = floor_seen_at_origin(Color(0.5f));
-        description.point_lights = {point_light(VectorD(0.0, 2.0, 0.0), ColorD(1.0))};
+        description.lights = {point_light(VectorD(0.0, 2.0, 0.0), ColorD(1.0))};
         // Small enough not to hide the floor from the camera; its face looks away from either end.
         description.shapes.push_back(disk(VectorD(0.0, height, 0.0), VectorD(0, 1, 0), 0.005, 1));
         EXPECT_EQ(sample_once(build_scene(description)) == ColorD(0.0), height < 2.0) << height;

@@ -52,7 +52,7 @@ TEST(PhotonPass, CountsItsPathsEvenWhereNothingShinesOrReflects) {
     for (ShapeDescription& shape : black_light.shapes)
         if (shape.radiance) shape.radiance = ColorD(0.0);
     SceneDescription void_with_light;
-    void_with_light.point_lights = {point_light(VectorD(1.0, 2.0, 3.0), ColorD(1.0))};
+    void_with_light.lights = {point_light(VectorD(1.0, 2.0, 3.0), ColorD(1.0))};
     SceneDescription nothing;
     for (const SceneDescription& description : {dark, black_light, void_with_light, nothing}) {
         const Scene scene = build_scene(description);
@@ -95,7 +95,7 @@ TEST(PhotonPass, LeavesNothingOnTheBackOfAOneSidedSurface) {
         SceneDescription description;
         description.materials = {diffuse(Color(0.5f), two_sided)};
         description.shapes = {disk(VectorD(0.0), VectorD(0, 1, 0), 5.0, 0)};
-        description.point_lights = {point_light(VectorD(0.0, -2.0, 0.0), ColorD(1.0))};
+        description.lights = {point_light(VectorD(0.0, -2.0, 0.0), ColorD(1.0))};
         const PhotonPass pass = trace_photons(build_scene(description), {.paths = 2000, .store_direct = true}, 1, 1);
         EXPECT_EQ(!pass.photons.empty(), two_sided);
         for (const Photon& photon : pass.photons) {
@@ -108,7 +108,7 @@ TEST(PhotonPass, LeavesNothingOnTheBackOfAOneSidedSurface) {
 TEST(PhotonPass, PhotonsLieOnTheirSurfaceAndPointBackToWhereTheyCameFrom) {
     SceneDescription description = floor_seen_at_origin(Color(0.5f));
     const VectorD lamp(1.0, 2.0, -0.5);
-    description.point_lights = {point_light(lamp, ColorD(1.0, 2.0, 6.0))};
+    description.lights = {point_light(lamp, ColorD(1.0, 2.0, 6.0))};
     const Scene scene = build_scene(description);
     const PhotonPass pass = trace_photons(scene, {.paths = 2000, .store_direct = true}, 1, 1);
     ASSERT_GT(pass.photons.size(), 500u);

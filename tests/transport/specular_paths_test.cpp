@@ -356,7 +356,7 @@ TEST(SpecularPhotons, OfAPointOverAMirrorComeFromItsImage) {
     description.materials = {diffuse(Color(0.5f)), mirror(Color(1.0f, 0.5f, 0.25f))};
     description.shapes = {disk({0, receiver_height, 0}, {0, -1, 0}, receiver_radius, 0),
                           disk({0, 0, 0}, {0, 1, 0}, 10.0, 1)};
-    description.point_lights = {point_light({0, height, 0}, ColorD(1.0))};
+    description.lights = {point_light({0, height, 0}, ColorD(1.0))};
     const PhotonPass pass = trace_photons(build_scene(description), {.paths = 100'000}, 1, 1);
     const double far = height + receiver_height;
     const double share = 0.5 * (1.0 - far / std::hypot(far, receiver_radius));  // of all directions
@@ -399,7 +399,7 @@ double fresnel_of_glass(double cosine) {
 TEST(SpecularPhotons, ThroughASlabHaveItsTransmittanceAtEveryAngle) {
     SceneDescription description = slab_between_planes(200.0);
     description.shapes.erase(description.shapes.begin() + 1);  // no ceiling
-    description.point_lights = {point_light({0, 2, 0}, ColorD(1.0))};
+    description.lights = {point_light({0, 2, 0}, ColorD(1.0))};
     const PhotonPass pass = trace_photons(build_scene(description), {.paths = 200'000}, 1, 1);
     constexpr int bins = 8;
     for (int bin = 0; bin < bins; ++bin) {
@@ -424,7 +424,7 @@ TEST(SpecularPhotons, ThroughASlabHaveItsTransmittanceAtEveryAngle) {
 TEST(SpecularPhotons, AllArriveThroughLosslessGlass) {
     SceneDescription description = balls_in_two_halves(1);
     description.shapes.pop_back();
-    description.point_lights = {point_light({-0.7, -0.2, 0.8}, ColorD(1.0))};  // inside the ball, off its centre
+    description.lights = {point_light({-0.7, -0.2, 0.8}, ColorD(1.0))};  // inside the ball, off its centre
     const PhotonPass pass = trace_photons(build_scene(description), {.paths = 50'000}, 1, 1);
     const Flux flux = caustic_flux(pass, 1, any_photon);
     EXPECT_LT(flux.error, 0.002);
@@ -480,11 +480,11 @@ TEST(CapturedLight, OfTheCameraInsideABallOfGlassEnds) {
 
 TEST(CapturedLight, OfALampInAMirrorBoxOrInGlassEnds) {
     SceneDescription box = mirror_box(Color(1.0f));
-    box.point_lights = {point_light({0.1, 0.2, 0.3}, ColorD(1.0))};
+    box.lights = {point_light({0.1, 0.2, 0.3}, ColorD(1.0))};
     SceneDescription ball;
     ball.materials = {glass()};
     ball.shapes = {sphere({0, 0, 0}, 1.0, false, 0)};
-    ball.point_lights = {point_light({0.9, 0, 0}, ColorD(1.0))};
+    ball.lights = {point_light({0.9, 0, 0}, ColorD(1.0))};
     for (const SceneDescription& description : {box, ball}) {
         const PhotonPass pass = trace_photons(build_scene(description), {.paths = 2000}, 1, 1);
         EXPECT_TRUE(pass.photons.empty());

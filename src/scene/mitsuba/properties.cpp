@@ -98,7 +98,7 @@ Properties::Properties(const XmlElement& plugin) : plugin_(plugin) {
         } else if (value_tags.count(child.tag)) {
             const std::string& name = child.require("name");
             if (!properties_.emplace(name, &child).second)
-                throw InputError(child.place, fmt::format("property \"{}\" stands twice", name));
+                throw InputError(child.place, fmt::format("expected one property \"{}\", got a second", name));
         } else {
             throw InputError(child.place, fmt::format("unknown element <{}>; known here: {}, {}", child.tag,
                                                       fmt::join(value_tags, ", "), fmt::join(object_tags, ", ")));

@@ -202,7 +202,7 @@ public:
         if (!parsed)
             throw InputError(place_at(parsed.offset), fmt::format("not well-formed XML: {}", parsed.description()));
         const pugi::xml_node root = document.document_element();
-        if (!root) throw InputError(file.string(), "expected <scene>, got no element");
+        if (!root) throw InputError(place_at(0), "expected <scene>, got no element");
         for (const pugi::xml_node& node : document.children())
             if (node != root)
                 throw InputError(place_at(node.offset_debug() + leading_blanks(node.value())),
@@ -231,11 +231,11 @@ public:
 private:
     XmlElement convert(const pugi::xml_node& node, const std::filesystem::path& file,
                        const std::shared_ptr<SceneFile>& scene_file, const LineNumbers& lines, int depth) {
-        if (++elements_ > element_limit)
-            throw InputError(file.string(), fmt::format("expected at most {} elements", element_limit));
         XmlElement element;
         element.tag = node.name();
         element.place = fmt::format("{}:{}", file.string(), lines.at(node.offset_debug()));
+        if (++elements_ > element_limit)
+            throw InputError(element.place, fmt::format("expected at most {} elements", element_limit));
         if (depth > nesting_limit)
             throw InputError(element.place,
                              fmt::format("expected at most {} elements inside each other", nesting_limit));

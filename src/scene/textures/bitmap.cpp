@@ -34,6 +34,15 @@ bool is_linear(Properties& properties) {
     return gamma && *gamma == 1.0;
 }
 
+/// The image, whose errors are at `place` too.
+ColorImage read_image_at(const std::filesystem::path& file, bool raw, const std::string& place) {
+    try {
+        return read_color_image(file, raw);
+    } catch (const InputError& error) {
+        throw InputError(place, error.what());
+    }
+}
+
 void require_only(Properties& properties, const std::string& name, const std::string& only) {
     const std::string value = properties.text(name).value_or(only);
     if (value != only)
@@ -78,7 +87,7 @@ Bitmap Bitmap::read(Plugin& plugin) {
     properties.require_all_known();
     plugin.require_no_objects();
     read_part(file, properties.place_of("filename"), plugin.source.bytes_read);
-    Bitmap bitmap{read_color_image(file, raw), to_uv, file.string()};
+    Bitmap bitmap{read_image_at(file, raw, properties.place_of("filename")), to_uv, file.string()};
     plugin.source.texture_pixels += bitmap.image.pixels.size();
     if (plugin.source.texture_pixels > texture_pixel_limit)
         throw InputError(properties.place_of("filename"),

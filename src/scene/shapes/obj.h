@@ -1,12 +1,11 @@
-// Wavefront OBJ meshes as their file has them, before they are placed in a scene.
+// Wavefront OBJ meshes: as their file has them, and placed in a scene.
 
 #pragma once
 
 #include <filesystem>
 #include <string>
 
-#include "scene/description.h"
-#include "scene/mitsuba/xml_reader.h"
+#include "scene/shapes/shape_reader.h"
 
 namespace photonlab {
 
@@ -32,5 +31,17 @@ ObjMesh read_obj_mesh(const std::filesystem::path& file, const ObjOptions& optio
 /// Computes the normals that are not there, as Mitsuba does: face normals weighted by the angle at the vertex.
 /// [Thuermer & Wuethrich 1998, "Computing Vertex Normals from Polygonal Facets"]
 void fill_in_normals(MeshDescription& mesh);
+
+struct Obj {
+    static constexpr const char* name = "obj";
+
+    static MeshDescription read(ShapeReader& reader);
+};
+
+/// Reads an OBJ mesh: all its objects as one, polygons cut into fans around their first corner as in Mitsuba, vertices
+/// with different normals or texture coordinates kept apart. With `face_normals` there are no vertex normals; otherwise
+/// they are the file's, or computed as Mitsuba does when any corner has none. Texture coordinates are the file's, v up,
+/// and left out when any corner has none.
+MeshDescription load_obj_mesh(const std::filesystem::path& file, bool face_normals);
 
 }  // namespace photonlab

@@ -1,0 +1,29 @@
+// A shape that shines: light leaves it uniform in area and by the cosine, so a photon's weight is the same wherever it
+// starts.
+
+#pragma once
+
+#include "scene/emitters/light_kind.h"
+
+namespace photonlab {
+
+/// Emits `radiance` from every point of its shape, to the side of the normal.
+struct AreaLight {
+    static constexpr const char* name = "area";
+    static constexpr bool is_met_by_rays = true;
+
+    ColorD radiance;
+    std::uint32_t shape;
+
+    ColorD power(const std::vector<Shape>& shapes) const { return radiance * (pi * shapes[shape].area); }
+    Ray emit(const std::vector<Shape>& shapes, const EmissionDraw& draw) const;
+    std::optional<DirectSample> sample_direct(const std::vector<Shape>& shapes, const Vector& receiver,
+                                              const Imath::V2f& u, double u_triangle) const;
+
+    /// The radiance, which is all that a shape's <emitter> says.
+    static ColorD read(LightReader& reader);
+    static void check(const ColorD& radiance, const std::string& place) { require_light(radiance, place, "radiance"); }
+};
+static_assert(LightKind<AreaLight>);
+
+}  // namespace photonlab

@@ -1,0 +1,31 @@
+#include "scene/emitters/light.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace photonlab {
+
+void require_light(const ColorD& light, const std::string& place, std::string_view what) {
+    if (!is_finite(light) || light.x < 0.0 || light.y < 0.0 || light.z < 0.0)
+        throw InputError(place, fmt::format("{}: expected finite values of at least 0, got {} {} {}", what, light.x,
+                                            light.y, light.z));
+}
+
+void require_valid(const LightDescription& light) {
+    std::visit([](const auto& description) { description.check(); }, light);
+}
+
+const std::string& place_of(const LightDescription& light) {
+    return std::visit([](const auto& description) -> const std::string& { return description.place; }, light);
+}
+
+Bounds bounds_of(const LightDescription& light) {
+    return std::visit([](const auto& description) { return description.bounds(); }, light);
+}
+
+Light place_light(const LightDescription& light, const ToUnitBox& to_unit_box) {
+    return std::visit([&](const auto& description) -> Light { return description.placed(to_unit_box); }, light);
+}
+
+}  // namespace photonlab

@@ -1,0 +1,37 @@
+// A point that shines alike in all directions.
+
+#pragma once
+
+#include "scene/emitters/light_kind.h"
+
+namespace photonlab {
+
+struct PointLight;
+
+struct PointLightDescription {
+    VectorD position;
+    ColorD intensity;  ///< W/sr
+    std::string place;
+
+    void check() const;
+    Bounds bounds() const { return {position, position}; }
+    PointLight placed(const ToUnitBox& to_unit_box) const;
+};
+
+struct PointLight {
+    static constexpr const char* name = "point";
+    static constexpr bool is_met_by_rays = false;
+    using Description = PointLightDescription;
+
+    ColorD intensity;  ///< power per steradian
+    Vector position;
+
+    static PointLightDescription read(LightReader& reader);
+
+    ColorD power(const std::vector<Shape>&) const { return intensity * (4.0 * pi); }
+    Ray emit(const std::vector<Shape>&, const EmissionDraw& draw) const;
+    std::optional<DirectSample> sample_direct(const std::vector<Shape>&, const Vector& receiver, const Imath::V2f&,
+                                              double) const;
+};
+
+}  // namespace photonlab

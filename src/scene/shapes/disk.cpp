@@ -1,0 +1,84 @@
+#include "scene/shapes/disk.h"
+
+#include <cmath>
+
+#include "core/error.h"
+#include "core/sampling.h"
+#include "scene/mitsuba/transform.h"
+#include "scene/shapes/shape_reader.h"
+
+namespace photonlab {
+
+void DiskDescription::check(const std::string& place) const {
+    require_round(centre, radius, place);
+    if (!is_finite(normal) || normal.length2() == 0.0)
+        throw InputError(place, "expected a disk's normal of unit length");
+}
+
+Bounds DiskDescription::bounds() const {
+    VectorD reach;
+    for (int axis = 0; axis < 3; ++axis)
+        reach[axis] = radius * std::sqrt(std::max(0.0, 1.0 - normal[axis] * normal[axis]));
+    return {centre - reach, centre + reach};
+}
+
+DiskDescription Disk::read(ShapeReader& reader) {
+    return {.centre = transform_point(reader.to_world, VectorD(0.0)),
+            .normal = transform_normal(reader.to_world, {0.0, 0.0, reader.flip_normals ? -1.0 : 1.0}),
+            .radius = uniform_scale(reader.to_world, 2, reader.element.place),
+            .texture_axes = reader.texture_axes()};
+}
+
+Disk DiskDescription::placed(const ToUnitBox& to_unit_box, const ShapeUse& use) const {
+    return {.frame = make_frame(Vector(normal)),
+            .centre = to_unit_box(centre),
+            .radius = to_unit_box.length(radius),
+            .texture_axes = use.has_texture ? std::optional(texture_axes) : std::nullopt};
+}
+
+Extent Disk::extent() const {
+    Vector reach;
+    for (int axis = 0; axis < 3; ++axis) {
+        const float n = frame.normal[axis];
+        reach[axis] = radius * std::sqrt(std::max(0.0f, 1.0f - n * n));
+    }
+    return {centre, reach};
+}
+
+Roots Disk::roots(const VectorD& origin, const VectorD& direction) const {
+    const VectorD normal(frame.normal);
+    const double slope = direction.dot(normal);
+    if (slope == 0.0) return {};
+    const double t = (VectorD(centre) - origin).dot(normal) / slope;
+    const VectorD offset = origin + direction * t - VectorD(centre);
+    return offset.length2() <= static_cast<double>(radius) * radius ? Roots{1, {t, 0.0}} : Roots{};
+}
+
+void Disk::complete(Hit& hit, const Ray& ray, float, float) const {
+    const VectorD normal(frame.normal);
+    const VectorD middle(centre);
+    const VectorD position = VectorD(ray.origin) + VectorD(ray.direction) * hit.distance;
+    hit.position = Vector(position - normal * (position - middle).dot(normal));
+    hit.geometric_normal = frame.normal;
+    hit.shading_normal = frame.normal;
+    if (!texture_axes) return;
+    const double x = (position - middle).dot((*texture_axes)[0]) / radius;
+    const double y = (position - middle).dot((*texture_axes)[1]) / radius;
+    hit.texture_coordinate = Imath::V2f(Imath::V2d(std::hypot(x, y), turn_to(x, y)));
+}
+
+std::vector<SurfacePoint> Disk::probes() const {
+    std::vector<SurfacePoint> points;
+    // Not the centre, where balls rest.
+    for (const auto& [x, y] : {std::pair(0.1f, 0.2f), std::pair(0.7f, 0.1f), std::pair(-0.7f, 0.2f),
+                               std::pair(0.2f, 0.7f), std::pair(-0.1f, -0.7f)})
+        points.push_back({centre + (frame.tangent * (x * radius) + frame.bitangent * (y * radius)), frame.normal});
+    return points;
+}
+
+SurfacePoint Disk::sample_area(const Imath::V2f& u, double) const {
+    const Imath::V2f point = sample_unit_disc(u) * radius;
+    return {centre + frame.tangent * point.x + frame.bitangent * point.y, frame.normal};
+}
+
+}  // namespace photonlab

@@ -1,0 +1,126 @@
+#include "scene/shapes/mesh.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <tuple>
+
+#include "core/error.h"
+#include "core/sampling.h"
+
+namespace photonlab {
+
+void MeshDescription::check(const std::string& place) const {
+    for (std::size_t i = 0; i < positions.size(); ++i)
+        if (!is_finite(positions[i])) throw InputError(place, fmt::format("vertex {} is not finite", i + 1));
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const auto& triangle = triangles[i];
+        if (std::max({triangle.x, triangle.y, triangle.z}) >= positions.size())
+            throw InputError(place, fmt::format("triangle {}: expected vertices below {}, got {} {} {}", i + 1,
+                                                positions.size(), triangle.x, triangle.y, triangle.z));
+    }
+    if (!normals.empty() && normals.size() != positions.size())
+        throw InputError(
+            place, fmt::format("expected a normal for each of {} vertices, got {}", positions.size(), normals.size()));
+    if (!texture_coordinates.empty() && texture_coordinates.size() != positions.size())
+        throw InputError(place, fmt::format("expected texture coordinates for each of {} vertices, got {}",
+                                            positions.size(), texture_coordinates.size()));
+    for (std::size_t i = 0; i < normals.size(); ++i)
+        if (!is_finite(normals[i])) throw InputError(place, fmt::format("normal {} is not finite", i + 1));
+    for (std::size_t i = 0; i < texture_coordinates.size(); ++i)
+        if (!std::isfinite(texture_coordinates[i].x) || !std::isfinite(texture_coordinates[i].y))
+            throw InputError(place, fmt::format("texture coordinates {} are not finite", i + 1));
+}
+
+Bounds MeshDescription::bounds() const {
+    Bounds bounds;
+    for (const VectorD& position : positions) bounds.include(position);
+    return bounds;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// Corners of a triangle, unit box, before they are rounded to float: rounding turns the plane of a sliver.
+std::array<VectorD, 3> corners(const MeshDescription& mesh, std::size_t triangle, const ToUnitBox& to_unit_box) {
+    const auto& vertices = mesh.triangles[triangle];
+    return {to_unit_box.exact(mesh.positions[vertices.x]), to_unit_box.exact(mesh.positions[vertices.y]),
+            to_unit_box.exact(mesh.positions[vertices.z])};
+}
+
+/// Nine numbers that tell two triangles apart, whichever corner they begin with.
+std::array<double, 9> identity_of(std::array<VectorD, 3> triangle) {
+    const auto is_before = [](const VectorD& a, const VectorD& b) {
+        return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+    };
+    std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end(), is_before), triangle.end());
+    std::array<double, 9> numbers{};
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = triangle[i / 3][static_cast<int>(i % 3)];
+    return numbers;
+}
+
+}  // namespace
+
+TriangleMesh MeshDescription::placed(const ToUnitBox& to_unit_box, const ShapeUse& use) const {
+    TriangleMesh mesh;
+    mesh.triangles = triangles;
+    for (const VectorD& position : positions) mesh.positions.push_back(to_unit_box(position));
+    for (const VectorD& normal : normals) mesh.normals.push_back(Vector(normal));
+    for (const Imath::V2d& uv : texture_coordinates)
+        mesh.texture_coordinates.emplace_back(static_cast<float>(uv.x), static_cast<float>(uv.y));
+    std::set<std::array<double, 9>> shining;  // a triangle that is there twice shines once
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const std::array<VectorD, 3> triangle = corners(*this, i, to_unit_box);
+        const VectorD normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+        mesh.geometric_normals.emplace_back(normal.normalized());
+        if (!use.emits || shining.insert(identity_of(triangle)).second) mesh.surface_area += 0.5 * normal.length();
+        if (use.emits) mesh.triangle_cdf.push_back(mesh.surface_area);
+    }
+    if (mesh.surface_area > 0.0)
+        for (double& share : mesh.triangle_cdf) share /= mesh.surface_area;
+    return mesh;
+}
+
+/// Completes a hit on a triangle. The position comes from the vertices, which is more accurate than origin + t
+/// direction.
+void TriangleMesh::complete(Hit& hit, const Ray& ray, float u, float v) const {
+    const auto& triangle = triangles[hit.primitive];
+    const float w = 1.0f - u - v;
+    const Vector& a = positions[triangle.x];
+    const Vector& b = positions[triangle.y];
+    const Vector& c = positions[triangle.z];
+    hit.position = a * w + b * u + c * v;
+    hit.geometric_normal = geometric_normals[hit.primitive];
+    // A triangle without area has no normal of its own; facing the ray is as good as any.
+    if (hit.geometric_normal == Vector(0.0f)) hit.geometric_normal = -ray.direction;
+    hit.shading_normal = hit.geometric_normal;
+    if (!normals.empty()) {
+        const VectorD interpolated =
+            VectorD(normals[triangle.x]) * w + VectorD(normals[triangle.y]) * u + VectorD(normals[triangle.z]) * v;
+        if (interpolated.length2() > 0.0) {
+            hit.shading_normal = Vector(interpolated.normalized());
+            if (hit.shading_normal.dot(hit.geometric_normal) < 0.0f) hit.shading_normal = -hit.shading_normal;
+        }
+    }
+    if (!texture_coordinates.empty())
+        hit.texture_coordinate = texture_coordinates[triangle.x] * w + texture_coordinates[triangle.y] * u +
+                                 texture_coordinates[triangle.z] * v;
+    else
+        hit.texture_coordinate = Imath::V2f(u, v);
+}
+
+SurfacePoint TriangleMesh::sample_area(const Imath::V2f& u, double u_triangle) const {
+    const auto found = std::upper_bound(triangle_cdf.begin(), triangle_cdf.end() - 1, u_triangle);
+    const auto index = static_cast<std::size_t>(found - triangle_cdf.begin());
+    const auto& triangle = triangles[index];
+    const Vector& a = positions[triangle.x];
+    const Vector& b = positions[triangle.y];
+    const Vector& c = positions[triangle.z];
+    const Imath::V2f weights = sample_triangle(u);
+    return {a * (1.0f - weights.x - weights.y) + b * weights.x + c * weights.y, geometric_normals[index]};
+}
+
+}  // namespace photonlab

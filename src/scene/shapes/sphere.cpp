@@ -1,0 +1,137 @@
+#include "scene/shapes/sphere.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/sampling.h"
+#include "scene/mitsuba/transform.h"
+#include "scene/shapes/shape_reader.h"
+
+namespace photonlab {
+
+/// 0.6 takes the scale out of to_world before it looks at the centre; 3 turns the normals when to_world mirrors.
+SphereDescription Sphere::read(ShapeReader& reader) {
+    Properties& properties = reader.properties;
+    const VectorD centre = properties.vector("center").value_or(VectorD(0.0));
+    const double radius = properties.number("radius").value_or(1.0);
+    if (!(radius > 0.0))
+        throw InputError(properties.place_of("radius"),
+                         fmt::format("radius: expected a number above 0, got {}", radius));
+    const double scale = uniform_scale(reader.to_world, 3, reader.element.place);
+    const bool is_mirrored = handedness(reader.to_world) < 0.0;
+    return {.centre = transform_point(reader.to_world, reader.is_version_06() ? centre / scale : centre),
+            .radius = radius * scale,
+            .flip_normals = reader.flip_normals != (is_mirrored && !reader.is_version_06()),
+            .texture_axes = reader.texture_axes()};
+}
+
+Sphere SphereDescription::placed(const ToUnitBox& to_unit_box, const ShapeUse& use) const {
+    return {.centre = to_unit_box(centre),
+            .radius = to_unit_box.length(radius),
+            .orientation = flip_normals ? -1.0f : 1.0f,
+            .texture_axes = use.has_texture ? std::optional(texture_axes) : std::nullopt};
+}
+
+/// The quadratic in the form that does not cancel: the root of larger magnitude by addition, the other by division.
+Roots Sphere::roots(const VectorD& origin, const VectorD& direction) const {
+    const VectorD offset = origin - VectorD(centre);
+    const double a = direction.length2();
+    const double half_b = offset.dot(direction);
+    // The discriminant from the closest point's distance, which stays accurate for far origins.
+    const VectorD closest = offset - direction * (half_b / a);
+    const double discriminant = a * (static_cast<double>(radius) * radius - closest.length2());
+    if (!(discriminant >= 0.0)) return {};
+    const double c = (offset.length() - radius) * (offset.length() + radius);
+    const double q = -(half_b + std::copysign(std::sqrt(discriminant), half_b));
+    double near = q / a;
+    double far = q != 0.0 ? c / q : near;
+    if (near > far) std::swap(near, far);
+    return {2, {near, far}};
+}
+
+void Sphere::complete(Hit& hit, const Ray& ray, float, float) const {
+    const VectorD middle(centre);
+    const VectorD outward = (VectorD(ray.origin) + VectorD(ray.direction) * hit.distance - middle).normalized();
+    hit.position = Vector(middle + outward * radius);
+    hit.geometric_normal = Vector(outward) * orientation;
+    hit.shading_normal = hit.geometric_normal;
+    if (!texture_axes) return;
+    const auto& [x, y, z] = *texture_axes;
+    const double from_pole = std::acos(std::clamp(outward.dot(z), -1.0, 1.0)) / pi;
+    hit.texture_coordinate = Imath::V2f(Imath::V2d(turn_to(outward.dot(x), outward.dot(y)), from_pole));
+}
+
+std::vector<SurfacePoint> Sphere::probes() const {
+    std::vector<SurfacePoint> points;
+    // Not along the axes, where spheres rest on floors: a single point of contact does no harm.
+    for (const float x : {-1.0f, 1.0f})
+        for (const float y : {-1.0f, 1.0f})
+            for (const float z : {-1.0f, 1.0f}) {
+                const Vector outward = Vector(x, 0.9f * y, 0.8f * z).normalized();
+                points.push_back({centre + outward * radius, outward});
+            }
+    return points;
+}
+
+SurfacePoint Sphere::sample_area(const Imath::V2f& u, double) const {
+    const Vector outward = sample_unit_sphere(u);
+    return {centre + outward * radius, outward * orientation};
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// The cone under which an outward emitting sphere is seen; empty from inside it or from on it.
+struct Cone {
+    VectorD axis;     // unit
+    double distance;  // to the centre
+    double one_minus_cos_max;
+    double density;  // per steradian
+};
+
+std::optional<Cone> visible_cone(const Sphere& sphere, const Vector& receiver) {
+    const VectorD to_centre = VectorD(sphere.centre) - VectorD(receiver);
+    const double distance = to_centre.length();
+    const double radius = sphere.radius;
+    if (sphere.orientation < 0.0f || !(distance > radius)) return std::nullopt;
+    const double sin_squared = (radius / distance) * (radius / distance);
+    const double cos_max = std::sqrt((distance - radius) * (distance + radius)) / distance;
+    const double one_minus_cos_max = sin_squared / (1.0 + cos_max);  // does not cancel for a small or far sphere
+    return Cone{to_centre / distance, distance, one_minus_cos_max, 1.0 / (2.0 * pi * one_minus_cos_max)};
+}
+
+}  // namespace
+
+std::optional<SeenPoint> Sphere::sample_seen(const Vector& receiver, const Imath::V2f& u) const {
+    const std::optional<Cone> seen = visible_cone(*this, receiver);
+    if (!seen) return std::nullopt;
+    const Cone& cone = *seen;
+    const Vector local = sample_cone(u, static_cast<float>(cone.one_minus_cos_max));
+    const Frame frame = make_frame(Vector(cone.axis));
+    const Vector direction = frame.to_world(local);
+    // Nearest intersection with the sphere: the direction was drawn inside the cone, so rounding aside there is one.
+    // Relative to the centre and in the cone's frame, because a small sphere is lost in the rounding of receiver + t
+    // direction.
+    const double sine_squared = static_cast<double>(local.x) * local.x + static_cast<double>(local.y) * local.y;
+    const double along = cone.distance * std::sqrt(std::max(0.0, 1.0 - sine_squared));
+    const double half_chord =
+        std::sqrt(std::max(0.0, static_cast<double>(radius) * radius - cone.distance * cone.distance * sine_squared));
+    const double x = local.x * (along - half_chord) / radius;
+    const double y = local.y * (along - half_chord) / radius;
+    const double towards_receiver = std::sqrt(std::max(0.0, 1.0 - x * x - y * y));
+    const Vector normal = frame.to_world(Vector(VectorD(x, y, -towards_receiver).normalized())).normalized();
+    const Vector position(VectorD(centre) + VectorD(normal) * radius);
+    return SeenPoint{
+        .position = offset_from_surface(position, normal, normal), .direction = direction, .density = cone.density};
+}
+
+std::optional<double> Sphere::seen_density(const Vector& receiver) const {
+    const std::optional<Cone> cone = visible_cone(*this, receiver);
+    return cone ? std::optional(cone->density) : std::nullopt;
+}
+
+}  // namespace photonlab

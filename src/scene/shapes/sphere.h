@@ -1,0 +1,48 @@
+// A sphere, met in double: a float32 quadratic loses one that is seen from far away.
+
+#pragma once
+
+#include "scene/shapes/surface.h"
+
+namespace photonlab {
+
+struct Sphere;
+
+/// Texture coordinates: u is the angle about the third axis, from the first axis to the second, and v that from the
+/// third axis; 1 is once around, and at the opposite pole.
+struct SphereDescription {
+    VectorD centre;
+    double radius = 1.0;        ///< > 0
+    bool flip_normals = false;  ///< true: the normal points to the centre
+    TextureAxes texture_axes = scene_axes;
+
+    void check(const std::string& place) const { require_round(centre, radius, place); }
+    Sphere placed(const ToUnitBox& to_unit_box, const ShapeUse& use) const;
+    Bounds bounds() const { return {centre - VectorD(radius), centre + VectorD(radius)}; }
+};
+
+struct Sphere {
+    static constexpr const char* name = "sphere";
+    using Description = SphereDescription;
+
+    Vector centre;
+    float radius;
+    float orientation;                        ///< +1: the normal points outwards; -1: to the centre
+    std::optional<TextureAxes> texture_axes;  ///< where its material has a texture
+
+    static SphereDescription read(ShapeReader& reader);
+
+    double area() const { return 4.0 * pi * radius * radius; }
+    Extent extent() const { return {centre, Vector(radius)}; }
+    Roots roots(const VectorD& origin, const VectorD& direction) const;
+    void complete(Hit& hit, const Ray& ray, float, float) const;
+    std::vector<SurfacePoint> probes() const;
+
+    SurfacePoint sample_area(const Imath::V2f& u, double) const;
+    /// By the solid angle of the visible cap, whose density is constant; empty from inside, from on it, and where it
+    /// faces inwards. [Shirley, Wang & Zimmerman 1996, "Monte Carlo Techniques for Direct Lighting Calculations"]
+    std::optional<SeenPoint> sample_seen(const Vector& receiver, const Imath::V2f& u) const;
+    std::optional<double> seen_density(const Vector& receiver) const;
+};
+
+}  // namespace photonlab
