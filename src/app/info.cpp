@@ -87,7 +87,7 @@ void print_narrow_gaps(const Scene& scene) {
 void info(const InfoOptions& options) {
     std::optional<Resolution> resolution;
     if (!options.resolution.empty()) resolution = parse_resolution(options.resolution);
-    start_threads(hardware_threads());
+    const int threads = start_threads_up_to(hardware_threads());
     const Scene scene = build_scene(load_scene_file(options.scene), resolution);
     const Camera& camera = scene.camera;
     const VectorD position = VectorD(camera.position) * scene.unit_length + scene.centre;
@@ -106,7 +106,7 @@ void info(const InfoOptions& options) {
     RunSettings paths;
     paths.method.integrator = "path";
     require_memory(options.scene.string(), MemoryEstimator(scene, 1).of({paths}, 0));
-    const HitPoints hit_points = trace_hit_points(scene, 1, hardware_threads());
+    const HitPoints hit_points = trace_hit_points(scene, 1, threads);
     const std::size_t count = hit_points.points.size();
     print_output("hit points  {} at one sample a pixel\n", count);
     if (count > 0)

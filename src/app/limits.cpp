@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
+#include "core/available_memory.h"
 #include "core/error.h"
-#include "experiment/memory.h"
 
 namespace photonlab {
 
@@ -63,6 +63,23 @@ StartedThreads try_threads(int threads) {
     return result;
 }
 
+/// OpenMP keeps its threads. From then on their stacks are part of what the process has. Returns how many there are; of
+/// a loop that does nothing the compiler would leave nothing.
+int start_threads_of_openmp(int threads) {
+    int started = 0;
+#pragma omp parallel num_threads(threads) reduction(+ : started)
+    started += 1;
+    return started;
+}
+
+/// How many threads have stacks in half of the memory that is left.
+int threads_in_half_of_memory() {
+    rlimit stack{};
+    const bool is_known = ::getrlimit(RLIMIT_STACK, &stack) == 0 && stack.rlim_cur != RLIM_INFINITY;
+    const double stack_mebibytes = static_cast<double>(is_known ? stack.rlim_cur : usual_stack) / (1 << 20);
+    return 1 + static_cast<int>(std::min(1024.0, 0.5 * available_memory().mebibytes / stack_mebibytes));
+}
+
 }  // namespace
 
 bool raise_limits() {
@@ -84,15 +101,23 @@ void start_threads(int threads) {
             "threads: {} are asked for, and {} can be started: {} (ulimit -u and -v, and pids.max of control groups, "
             "are what limits them); set threads to fewer",
             threads, possible.count, possible.why_no_more));
-        // OpenMP keeps them. From now on their stacks are part of what the process has.
-#pragma omp parallel num_threads(threads)
-    {}
+    start_threads_of_openmp(threads);
+}
+
+int start_threads_up_to(int threads) {
+    return start_threads_of_openmp(try_threads(std::min(threads, threads_in_half_of_memory())).count);
 }
 
 std::string no_memory_message() {
-    const AvailableMemory available = available_memory();
-    return fmt::format("memory: more was needed than {:.0f} MiB, which the program holds, and {:.0f} MiB {}",
-                       resident_mebibytes(), available.mebibytes, available.limit);
+    return fmt::format("memory: more was needed than there is: the program holds {:.0f} MiB, and {}",
+                       resident_mebibytes(), describe(available_memory()));
+}
+
+std::string limit_message() {
+    constexpr double as_good_as_none = 16.0;  // MiB
+    if (available_memory().mebibytes < as_good_as_none) return no_memory_message();
+    const StartedThreads possible = try_threads(2);
+    return possible.count < 2 ? "threads: no more can be started: " + possible.why_no_more : "";
 }
 
 }  // namespace photonlab

@@ -17,7 +17,13 @@ void require_stack();
 /// Starts the threads that OpenMP is going to use. Throws InputError when there cannot be so many.
 void start_threads(int threads);
 
+/// Starts as many of them as there can be, beside the work that is to be done; returns how many those are.
+int start_threads_up_to(int threads);
+
 /// What is said when memory was asked for in vain.
 std::string no_memory_message();
+
+/// What is said when the process has as good as no memory left, or can start no thread; empty otherwise.
+std::string limit_message();
 
 }  // namespace photonlab

@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <sstream>
 #include <string>
@@ -48,6 +49,18 @@ void start_with_passive_waiting(char** argv) {
 int report(const std::string& message, int code) {
     photonlab::print_message("photonlab: {}\n", one_line(message));
     return code;
+}
+
+/// Some libraries end the program where they are refused memory or a thread, without a word.
+[[noreturn]] void end_for_a_library() noexcept {
+    try {
+        const std::string message = photonlab::limit_message();
+        ::_exit(message.empty() ? report("internal error: a library ended the program", internal_error)
+                                : report(message, bad_input));
+    } catch (...) {
+        photonlab::write_message("photonlab: memory: more was needed than there is\n");
+        ::_exit(bad_input);
+    }
 }
 
 void add_commands(CLI::App& app) {
@@ -102,6 +115,7 @@ int run_program(int argc, char** argv) {
 int main(int argc, char** argv) {
     photonlab::occupy_standard_streams();
     start_with_passive_waiting(argv);
+    std::set_terminate(end_for_a_library);
     std::signal(SIGXFSZ, SIG_IGN);  // a file that grows beyond a quota is an error of writing like any other
     std::signal(SIGPIPE, SIG_IGN);  // and so is a pipe whose reader has left
     try {
@@ -111,7 +125,9 @@ int main(int argc, char** argv) {
         return report(error.what(), bad_input);
     } catch (const photonlab::Interrupted& interruption) {
         return report(interruption.what(), photonlab::interrupted_exit_code);
-    } catch (const std::system_error& error) {  // of files and threads
+    } catch (const std::filesystem::filesystem_error& error) {
+        return report(error.path1().string() + ": " + error.code().message(), bad_input);
+    } catch (const std::system_error& error) {  // of threads
         return report(error.what(), bad_input);
     } catch (const std::bad_alloc&) {
         return report(photonlab::no_memory_message(), bad_input);

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/files.h"
 #include "core/number_in.h"
 #include "integrators/registry.h"
 
@@ -63,7 +64,7 @@ const FileKind* kind_named(const std::string& name) {
 
 std::string require_folder_name(const std::string& text) {
     const FileKind* kind = kind_named(text);
-    if (!kind || std::filesystem::is_directory(text)) return "";
+    if (!kind || is_folder(text)) return "";
     return fmt::format("expected the name of a folder, got \"{}\", that of a file of {}", text, kind->name);
 }
 

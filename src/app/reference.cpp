@@ -9,6 +9,7 @@
 #include "app/interruption.h"
 #include "app/limits.h"
 #include "app/options.h"
+#include "core/files.h"
 #include "core/messages.h"
 #include "experiment/experiment_file.h"
 #include "experiment/progress.h"
@@ -34,7 +35,7 @@ void make_reference(ReferenceOptions options) {
     options.settings.max_depth = options.max_depth.value_or(scene.max_depth);
 
     const bool adds = options.settings.samples > 0;
-    if (adds && std::filesystem::exists(options.output / "reference.json"))
+    if (adds && is_there(options.output / "reference.json"))
         print_message(
             "{}: adds to the {} samples a half that are there; runs that were judged by them will be made again\n",
             options.output.string(), read_reference_json(options.output).at("samples_per_half").get<std::uint64_t>());

@@ -81,9 +81,10 @@ void print_summary(const RunState& state, const RunSettings& settings, const Sce
 }
 
 void require_consistent(const RenderOptions& options) {
+    std::error_code unknown;  // as of a name that no file can have, which is refused later
     if (options.resume && options.checkpoint.empty())
         throw InputError("--resume: expected --checkpoint FILE as well, where the state to go on from is");
-    if (!options.resume && !options.checkpoint.empty() && std::filesystem::exists(options.checkpoint))
+    if (!options.resume && !options.checkpoint.empty() && std::filesystem::exists(options.checkpoint, unknown))
         throw InputError(options.checkpoint,
                          "is there already: --resume goes on from it; to begin anew, remove it or give another file");
 }
@@ -114,6 +115,12 @@ std::vector<WrittenFile> written_files(const RenderOptions& options, const std::
     return written;
 }
 
+void require_possible_name(const WrittenFile& written) {
+    std::error_code error;
+    if (std::filesystem::status(written.file, error).type() == std::filesystem::file_type::none)
+        throw InputError(written.file.string(), written.option + ": cannot be written: " + error.message());
+}
+
 /// What is written must be what its name says. A device is refused as such, later.
 void require_name_of_kind(const WrittenFile& written) {
     const FileKind* named = kind_named(written.file.string());
@@ -132,13 +139,16 @@ void require_sound_outputs(const RenderOptions& options, const std::vector<std::
     constexpr const char* input = "";  // in place of an option
     std::map<std::filesystem::path, std::string> taken;
     const auto take = [&](const std::filesystem::path& file, const std::string& by) {
-        return taken.try_emplace(std::filesystem::weakly_canonical(file), by);
+        std::error_code unknown;
+        const std::filesystem::path canonical = std::filesystem::weakly_canonical(file, unknown);
+        return taken.try_emplace(unknown ? file : canonical, by);
     };
     take(options.scene, input);
     if (const std::filesystem::path reference = options.reference; !reference.empty())
         for (const auto& file : {reference, reference / "half_a.exr", reference / "half_b.exr"}) take(file, input);
     for (const WrittenFile& written : written_files(options, snapshots)) {
         const auto& [option, file, kind] = written;
+        require_possible_name(written);
         if (const auto [at, is_new] = take(file, option); !is_new)
             throw InputError(file.string(),
                              option + ": is " +

@@ -1,16 +1,12 @@
 #include "experiment/memory.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
-#include <limits>
 
+#include "core/available_memory.h"
 #include "core/error.h"
 #include "experiment/coarse_view.h"
-#include "experiment/control_group.h"
 #include "gather/photon_map.h"
 #include "integrators/registry.h"
 
@@ -19,7 +15,6 @@ namespace photonlab {
 namespace {
 
 constexpr double mebibyte = 1024.0 * 1024.0;
-constexpr double no_limit = std::numeric_limits<double>::infinity();
 constexpr double margin = 1.1;
 constexpr std::uint64_t probe_paths = 10'000;
 
@@ -27,38 +22,6 @@ constexpr std::uint64_t probe_paths = 10'000;
 constexpr double bytes_of_statistics = 120.0;
 // Layers in float and double, their sum, an error's pixels, the file in memory, the reference's halves and their mean.
 constexpr double bytes_of_pixel = 240.0;
-
-struct ProcessSize {
-    double virtual_bytes = 0.0;
-    double resident_bytes = 0.0;
-    double data_bytes = 0.0;  // that only it can write
-};
-
-ProcessSize process_size() {
-    std::ifstream stream("/proc/self/statm");
-    ProcessSize pages;
-    double shared = 0.0, text = 0.0, library = 0.0;
-    stream >> pages.virtual_bytes >> pages.resident_bytes >> shared >> text >> library >> pages.data_bytes;
-    const auto page = static_cast<double>(::sysconf(_SC_PAGESIZE));
-    return {pages.virtual_bytes * page, pages.resident_bytes * page, pages.data_bytes * page};
-}
-
-double of_machine() {
-    std::ifstream stream("/proc/meminfo");
-    std::string name;
-    double kibibytes = 0.0;
-    for (std::string rest; stream >> name >> kibibytes && std::getline(stream, rest);)
-        if (name == "MemAvailable:") return kibibytes * 1024.0;
-    return no_limit;
-}
-
-/// What a limit of the process's own leaves of the bytes that it counts.
-double of_own_limit(int resource, double used) {
-    rlimit limit{};
-    if (::getrlimit(static_cast<__rlimit_resource_t>(resource), &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
-        return no_limit;
-    return std::max(0.0, static_cast<double>(limit.rlim_cur) - used);
-}
 
 }  // namespace
 
@@ -93,9 +56,8 @@ const MemoryEstimator::PhotonSize& MemoryEstimator::photon_size(const RunSetting
 
 double MemoryEstimator::photon_bytes(const std::vector<RunSettings>& together) {
     const auto is_any = [&](Needs::Photons photons) {
-        return std::any_of(together.begin(), together.end(), [&](const RunSettings& settings) {
-            return needs_of(settings.method).photons == photons;
-        });
+        return std::any_of(together.begin(), together.end(),
+                           [&](const RunSettings& settings) { return needs_of(settings.method).photons == photons; });
     };
     const bool of_pass = is_any(Needs::Photons::OfPass);
     const bool of_all = is_any(Needs::Photons::OfAllPasses);
@@ -121,35 +83,28 @@ MemoryEstimate MemoryEstimator::of(const std::vector<RunSettings>& together, std
     return estimate;
 }
 
-AvailableMemory available_memory() {
-    const ProcessSize size = process_size();
-    AvailableMemory least{of_machine(), "available"};
-    const auto compare = [&](double bytes, const std::string& limit) {
-        if (bytes < least.mebibytes) least = {bytes, limit};
-    };
-    if (const auto left = memory_left_by_control_groups())
-        compare(left->bytes, "left by the control group " + left->group);
-    compare(of_own_limit(RLIMIT_AS, size.virtual_bytes), "left by ulimit -v");
-    compare(of_own_limit(RLIMIT_DATA, size.data_bytes), "left by ulimit -d");
-    least.mebibytes /= mebibyte;
-    return least;
+namespace {
+
+/// "hit points 410, photons 250, images 122", in MiB.
+std::string parts_of(const MemoryEstimate& estimate) {
+    return fmt::format("hit points {:.0f}, photons {:.0f}, images {:.0f}", estimate.hit_points, estimate.photons,
+                       estimate.images);
 }
 
-double resident_mebibytes() {
-    return process_size().resident_bytes / mebibyte;
-}
+}  // namespace
 
 std::string describe(const MemoryEstimate& estimate) {
     const AvailableMemory available = available_memory();
-    return fmt::format(
-        "up to {:.0f} MiB (scene {:.0f}, hit points {:.0f}, photons {:.0f}, images {:.0f}) of {:.0f} MiB {}",
-        estimate.total(), estimate.program, estimate.hit_points, estimate.photons, estimate.images,
-        estimate.program + available.mebibytes, available.limit);
+    return fmt::format("up to {:.0f} MiB (scene {:.0f}, {}) of {:.0f} MiB that {} leaves", estimate.total(),
+                       estimate.program, parts_of(estimate), estimate.program + available.mebibytes, available.limit);
 }
 
 void require_memory(const std::string& what, const MemoryEstimate& estimate) {
-    if (estimate.total() - estimate.program > available_memory().mebibytes)
-        throw InputError(what, "does not fit into memory: it needs " + describe(estimate));
+    const AvailableMemory available = available_memory();
+    const double needed = estimate.total() - estimate.program;
+    if (needed > available.mebibytes)
+        throw InputError(what, fmt::format("needs up to {:.0f} MiB more ({}), and {}", needed, parts_of(estimate),
+                                           describe(available)));
 }
 
 }  // namespace photonlab

@@ -1,4 +1,4 @@
-// How much memory runs will take, before they are started, and how much there is.
+// How much memory runs will take, before they are started.
 //
 // Hit points are counted in a coarse view (coarse_view.h), photons in 10,000 paths. Both are scaled, and a tenth is
 // added: the estimate is above what is taken, by up to a factor of two.
@@ -53,20 +53,8 @@ private:
     std::map<std::tuple<std::uint64_t, int, DirectMode>, PhotonSize> photons_;  // by paths, depth, what is stored
 };
 
-/// Mebibytes that this process can still have, and who says so.
-struct AvailableMemory {
-    double mebibytes = 0.0;
-    std::string limit;  ///< "available", "left by the control group /a", "left by ulimit -v"
-};
-
-/// The least of what the machine, the process's control groups and its own limits leave.
-AvailableMemory available_memory();
-
-/// What the process holds now.
-double resident_mebibytes();
-
-/// "up to 812 MiB (scene 30, hit points 410, photons 250, images 122) of 7421 MiB available"; what the program holds
-/// already is in both.
+/// "up to 812 MiB (scene 30, hit points 410, photons 250, images 122) of 7421 MiB that the machine leaves"; what the
+/// program holds already is in both.
 std::string describe(const MemoryEstimate& estimate);
 
 /// Throws InputError with the numbers when it cannot fit.

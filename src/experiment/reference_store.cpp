@@ -13,6 +13,7 @@
 #include "core/files.h"
 #include "core/hash.h"
 #include "core/number_in.h"
+#include "experiment/memory.h"
 #include "experiment/reference_check.h"
 #include "experiment/version.h"
 #include "image/exr.h"
@@ -74,6 +75,41 @@ std::uint64_t read_number(const std::filesystem::path& file, const Metadata& met
     return *number;
 }
 
+double stored_seconds(const std::filesystem::path& folder) {
+    return is_there(folder / "reference.json") ? read_reference_json(folder).value("seconds", 0.0) : 0.0;
+}
+
+/// How many samples a half has, by its metadata. Throws InputError when others cannot be joined to them.
+std::uint64_t samples_to_continue(const std::filesystem::path& file, const Metadata& metadata, const std::string& key,
+                                  const RunSettings& settings) {
+    const auto text = [&](std::string_view attribute, const std::string& otherwise) {
+        const auto found = metadata.find(std::string(attribute));
+        return found == metadata.end() ? otherwise : found->second;
+    };
+    if (text(key_attribute, "") != key)
+        throw InputError(file.string(),
+                         "this is a half of another reference: its scene, resolution, samples per pixel or depth "
+                         "differ; choose another folder");
+    const std::uint64_t seed = read_number(file, metadata, seed_attribute);
+    if (seed != settings.seed)
+        throw InputError(file.string(), fmt::format("was made with seed {}; it cannot be continued with seed {}", seed,
+                                                    settings.seed));
+    const std::string method = text(method_attribute, "path");
+    if (method != describe_method(settings.method))
+        throw InputError(file.string(), fmt::format("was made with {}; it cannot be continued with {}", method,
+                                                    describe_method(settings.method)));
+    return read_number(file, metadata, samples_attribute);
+}
+
+/// Refuses a folder of something else before anything is written into it.
+void require_own_reference(const std::filesystem::path& folder, const std::string& key, const RunSettings& settings) {
+    stored_seconds(folder);
+    for (const std::string_view half : halves) {
+        const std::filesystem::path file = half_file(folder, half);
+        if (is_there(file)) samples_to_continue(file, read_exr_metadata(file), key, settings);
+    }
+}
+
 /// One half while samples are added: what was there, and an integrator that makes what is new.
 class GrowingHalf {
 public:
@@ -87,21 +123,7 @@ public:
         if (!is_there(file_)) return;
         Metadata metadata;
         stored_ = read_exr(file_, &metadata);
-        if (metadata[std::string(key_attribute)] != key_)
-            throw InputError(
-                file_.string(),
-                "this is a half of another reference: its scene, resolution, samples per pixel or depth differ; "
-                "choose another folder");
-        const std::uint64_t stored_seed = read_number(file_, metadata, seed_attribute);
-        if (stored_seed != seed_)
-            throw InputError(file_.string(), fmt::format("was made with seed {}; it cannot be continued with seed {}",
-                                                         stored_seed, seed_));
-        const std::string stored_method =
-            metadata.count(std::string(method_attribute)) ? metadata[std::string(method_attribute)] : "path";
-        if (stored_method != describe_method(method_))
-            throw InputError(file_.string(), fmt::format("was made with {}; it cannot be continued with {}",
-                                                         stored_method, describe_method(method_)));
-        stored_samples_ = read_number(file_, metadata, samples_attribute);
+        stored_samples_ = samples_to_continue(file_, metadata, key_, settings);
         if (!stored_.find(gathered_layer))
             throw InputError(file_.string(), "holds the picture without its layers; nothing can be added to it");
     }
@@ -219,10 +241,6 @@ void set_check(Json& json, const Json& check) {
         json["estimate"] = check.at("verdict") == "disputed" ? "unbiased, but disputed" : "unbiased";
 }
 
-double stored_seconds(const std::filesystem::path& folder) {
-    return is_there(folder / "reference.json") ? read_reference_json(folder).value("seconds", 0.0) : 0.0;
-}
-
 }  // namespace
 
 Json add_reference_samples(const Scene& scene, const ReferenceSettings& settings, const std::filesystem::path& folder,
@@ -230,14 +248,16 @@ Json add_reference_samples(const Scene& scene, const ReferenceSettings& settings
     require_perfect_square(settings.samples_per_pixel);
     const std::string key = reference_key(subject_of(scene, settings));
     const MethodSettings method = method_of(settings);
+    const RunSettings run{.method = method, .seed = settings.seed, .threads = settings.threads};
+    require_own_reference(folder, key, run);
+    require_memory(folder.string(), MemoryEstimator(scene, settings.samples_per_pixel).of({run, run}, 0));
     require_writable(folder / "reference.json");
     const FileLock lock = lock_reference(folder);
     const double seconds_before = stored_seconds(folder);
 
     const HitPoints hit_points = trace_hit_points(scene, settings.samples_per_pixel, settings.threads);
     const auto half = [&](const HalfPurposes& of_half) {
-        return GrowingHalf(half_file(folder, of_half.name), key, scene, hit_points,
-                           {.method = method, .seed = settings.seed, .threads = settings.threads}, of_half.purposes);
+        return GrowingHalf(half_file(folder, of_half.name), key, scene, hit_points, run, of_half.purposes);
     };
     GrowingHalf half_a = half(half_purposes[0]);
     GrowingHalf half_b = half(half_purposes[1]);

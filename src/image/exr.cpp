@@ -22,6 +22,7 @@
 #include <set>
 #include <string_view>
 
+#include "core/available_memory.h"
 #include "core/error.h"
 #include "core/files.h"
 #include "core/hash.h"
@@ -221,7 +222,7 @@ Image read_pixels(const std::filesystem::path& file, Metadata* metadata, const s
     if (width < 1 || height < 1) throw InputError(place, "has an empty data window (" + size + ")");
 
     const Contents contents = find_contents(place, header, component);
-    const auto file_bytes = static_cast<std::int64_t>(std::filesystem::file_size(file));
+    const auto file_bytes = static_cast<std::int64_t>(size_of_file(file));
     const auto layers = static_cast<std::int64_t>(contents.layers.size() + 1);
     if (width > largest_pixel_count / height || width * height > largest_pixel_count / layers ||
         width * height * layers / largest_compression_ratio > file_bytes)
@@ -231,6 +232,8 @@ Image read_pixels(const std::filesystem::path& file, Metadata* metadata, const s
         throw InputError(place, "has too many channels, or tiles too large, for its width of " + std::to_string(width));
     if (!input.partComplete(0)) throw InputError(place, "is incomplete: part of its pixels is missing");
 
+    const std::int64_t read_bytes = width * height * layers * static_cast<std::int64_t>(sizeof(Color));
+    require_memory_for(place, static_cast<std::uint64_t>(read_bytes));
     Image image;
     image.width = static_cast<int>(width);
     image.height = static_cast<int>(height);
@@ -338,7 +341,7 @@ namespace {
 /// Refuses a header whose attributes claim more bytes than the file has: OpenEXR asks for memory for them, up to 2 GiB,
 /// before it reads them. What else may be wrong with it OpenEXR finds itself.
 void require_attributes_within(const std::filesystem::path& path) {
-    const std::uint64_t file_bytes = std::filesystem::file_size(path);
+    const std::uint64_t file_bytes = size_of_file(path);
     std::ifstream file(path, std::ios::binary);
     file.seekg(8);  // the magic number and the version
     const auto skip_text = [&] {
@@ -391,7 +394,7 @@ Metadata read_sealed_metadata(const std::filesystem::path& file) {
     const auto bytes = number_in<std::uintmax_t>(metadata[bytes_attribute]);
     if (!bytes || metadata[checksum_attribute].size() != checksum_digits)
         throw InputError(file.string(), "does not say how long it is and what its checksum is");
-    const std::uintmax_t size = std::filesystem::file_size(file);
+    const std::uintmax_t size = size_of_file(file);
     if (size != *bytes)
         throw InputError(file.string(), fmt::format("has {} bytes, and had {} when it was written", size, *bytes));
     return metadata;

@@ -9,6 +9,8 @@
 #include <new>
 #include <stdexcept>
 
+#include "core/available_memory.h"
+
 namespace photonlab {
 
 namespace {
@@ -77,17 +79,14 @@ void require_success(RTCDevice device) {
 
 /// One device for all scenes, since Embree can make no more than about a thousand. One thread builds: then no tie
 /// between surfaces that coincide can depend on how many there are. Configuration files would be settings from outside.
-/// Tracing runs on the caller's threads.
+/// Tracing runs on the caller's threads. It is never released: that starts a thread, which there may be no room for.
 RTCDevice shared_device() {
-    struct Device {
-        RTCDevice device = rtcNewDevice("threads=1,start_threads=0,ignore_config_files=1");
-        Device() { require_success(device); }
-        Device(const Device&) = delete;
-        Device& operator=(const Device&) = delete;
-        ~Device() { rtcReleaseDevice(device); }
-    };
-    static const Device shared;
-    return shared.device;
+    static const RTCDevice shared = [] {
+        const RTCDevice device = rtcNewDevice("threads=1,start_threads=0,ignore_config_files=1");
+        require_success(device);
+        return device;
+    }();
+    return shared;
 }
 
 RTCGeometry make_mesh(RTCDevice device, const TriangleMesh& mesh) {
@@ -115,6 +114,16 @@ RTCGeometry make_analytic(RTCDevice device, Analytic& shape) {
     return geometry;
 }
 
+/// What Embree takes, as measured of a million triangles: its own copies of the meshes, and its tree.
+std::uint64_t bytes_in_embree(const std::vector<Shape>& shapes) {
+    constexpr std::uint64_t bytes_of_triangle = 100;
+    std::uint64_t bytes = 0;
+    for (const Shape& shape : shapes)
+        if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry))
+            bytes += mesh->triangles.size() * bytes_of_triangle;
+    return bytes;
+}
+
 }  // namespace
 
 EmbreeScene::~EmbreeScene() {
@@ -125,7 +134,9 @@ void EmbreeSceneDeleter::operator()(EmbreeScene* embree) const {
     delete embree;
 }
 
-std::unique_ptr<EmbreeScene, EmbreeSceneDeleter> build_embree_scene(const std::vector<Shape>& shapes) {
+std::unique_ptr<EmbreeScene, EmbreeSceneDeleter> build_embree_scene(const std::vector<Shape>& shapes,
+                                                                    const std::string& name) {
+    require_memory_for(name, bytes_in_embree(shapes));
     std::unique_ptr<EmbreeScene, EmbreeSceneDeleter> embree(new EmbreeScene);
     const RTCDevice device = shared_device();
     embree->scene = rtcNewScene(device);

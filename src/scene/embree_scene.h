@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "scene/embree.h"
@@ -22,6 +23,7 @@ struct EmbreeScene {
 
 /// Hands the shapes to Embree. Throws std::bad_alloc when memory does not suffice, and std::runtime_error when Embree
 /// fails otherwise.
-std::unique_ptr<EmbreeScene, EmbreeSceneDeleter> build_embree_scene(const std::vector<Shape>& shapes);
+std::unique_ptr<EmbreeScene, EmbreeSceneDeleter> build_embree_scene(const std::vector<Shape>& shapes,
+                                                                    const std::string& name);
 
 }  // namespace photonlab

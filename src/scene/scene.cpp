@@ -207,7 +207,7 @@ Scene build_scene(const SceneDescription& description, std::optional<Resolution>
     }
     add_emitters(scene, description, to_unit_box);
     scene.camera = make_camera(description.camera, resolution, to_unit_box);
-    scene.embree = build_embree_scene(scene.shapes);
+    scene.embree = build_embree_scene(scene.shapes, scene.name);
     return scene;
 }
 

@@ -73,15 +73,60 @@ TEST_F(Names, ThatNoFileCanHaveAreRefusedBeforeAnythingIsRendered) {
                            passes, "--snapshots", passes},
                           said),
               2);
-    EXPECT_NE(said.find("File name too long"), std::string::npos) << said;
-    EXPECT_NE(said.find("-pass-1000000000.exr"), std::string::npos) << said;
+    EXPECT_NE(said.find("-pass-1000000000.exr: --snapshots: cannot be written: File name too long"), std::string::npos)
+        << said;
+    EXPECT_EQ(run_program({"render", scene, "-o", (folder_ / (std::string(255, 'o') + ".exr")).string()}, said), 2);
+    EXPECT_NE(said.find(".exr: -o: cannot be written: File name too long"), std::string::npos) << said;
     for (const char* option : {"--csv", "--png", "--checkpoint"}) {
         const std::string name = std::string(300, 'o') + (option == std::string("--png") ? ".png" : "");
         EXPECT_EQ(run_program({"render", scene, "-o", (folder_ / "a.exr").string(), "--passes", passes, option,
                                (folder_ / name).string()},
                               said),
                   2);
-        EXPECT_NE(said.find("File name too long"), std::string::npos) << said;
+        EXPECT_NE(said.find(option + std::string(": cannot be written: File name too long")), std::string::npos)
+            << said;
+    }
+}
+
+// In words of the library's own it would say which function failed.
+TEST_F(Names, ThatNoFileCanHaveAreSaidAsTheyAre) {
+    const std::string scene = (folder_ / "walls/scene.xml").string();
+    const std::string image = (folder_ / "reference/half_a.exr").string();
+    const std::string tiny = (folder_ / "tiny.toml").string();
+    const std::string output = (folder_ / "out.exr").string();
+    std::filesystem::create_symlink("round", folder_ / "round");
+    for (const std::string name : {"round.exr", "round.csv", "round.png"})
+        std::filesystem::create_symlink(name, folder_ / name);
+    for (const std::string& name : {std::string(300, 'n'), std::string(300, 'n') + "/n", std::string(5000, 'n'),
+                                    std::string("round"), std::string("round/n")}) {
+        const std::string none = (folder_ / name).string();
+        std::ofstream(folder_ / "odd.toml") << "scenes = [{ path = 'walls/scene.xml', reference = '" << name
+                                            << "' }]\npasses = 1\n[[method]]\nintegrator = 'path'\n";
+        for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+                 {"info", none},
+                 {"render", none, "-o", output},
+                 {"render", scene, "-o", none + ".exr"},
+                 {"render", scene, "-o", output, "--csv", none + ".csv"},
+                 {"render", scene, "-o", output, "--png", none + ".png"},
+                 {"render", scene, "-o", output, "--reference", none},
+                 {"render", scene, "-o", output, "--checkpoint", none},
+                 {"render", scene, "-o", output, "--checkpoint", none, "--resume"},
+                 {"reference", none, "-o", (folder_ / "new").string()},
+                 {"reference", scene, "-o", none, "--samples", "1"},
+                 {"reference", scene, "-o", none, "--samples", "0"},
+                 {"compare", none, image},
+                 {"compare", image, none},
+                 {"run", none},
+                 {"run", (folder_ / "odd.toml").string(), "-o", (folder_ / "results").string()},
+                 {"run", tiny, "-o", none},
+                 {"run", tiny, "-o", none, "--list"},
+                 {"verify", none}}) {
+            std::string said;
+            const int code = run_program(command, said);
+            EXPECT_EQ(code, 2) << command[0] << ' ' << name << ": " << said;
+            EXPECT_EQ(said.find("filesystem error"), std::string::npos) << said;
+            EXPECT_NE(said.find("photonlab: "), std::string::npos) << said;
+        }
     }
 }
 

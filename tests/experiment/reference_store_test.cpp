@@ -111,6 +111,25 @@ TEST_F(ReferenceStore, MadeByPpmItResumesAndSaysThatItIsBiased) {
               std::string::npos);
 }
 
+// Where there was a lock meanwhile, the file in its way would be what is refused.
+TEST_F(ReferenceStore, HalvesOfAnotherReferenceAreRefusedBeforeAnythingIsWritten) {
+    add_reference_samples(scene_, settings(1), folder_ / "reference");
+    folder_.write("reference/lock", "combination");
+    const auto refusal = [&](const ReferenceSettings& other) {
+        return message_of([&] { add_reference_samples(scene_, other, folder_ / "reference"); });
+    };
+    ReferenceSettings other = settings(1);
+    other.max_depth = 3;
+    EXPECT_NE(refusal(other).find("half_a.exr: this is a half of another reference"), std::string::npos);
+    other = settings(1);
+    other.seed = 7;
+    EXPECT_NE(refusal(other).find("half_a.exr: was made with seed 1; it cannot be continued with seed 7"),
+              std::string::npos);
+    EXPECT_NE(refusal(settings(1)).find("lock: is in the way"), std::string::npos);
+    folder_.write("reference/reference.json", "[]");
+    EXPECT_NE(refusal(settings(1)).find("reference.json: this is no reference"), std::string::npos);
+}
+
 TEST_F(ReferenceStore, LightThatNoPathFindsIsRefused) {
     std::string text = two_walls_scene;
     text.replace(text.find("</scene>"), 8,

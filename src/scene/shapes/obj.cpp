@@ -20,6 +20,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "core/available_memory.h"
 #include "core/error.h"
 #include "core/number_in.h"
 
@@ -34,6 +35,9 @@ constexpr std::string_view ignored_keywords[] = {"o",      "g",          "s",   
 
 /// Of those, what 0.6 makes of them.
 constexpr std::string_view grouping_keywords[] = {"g", "usemtl", "mtllib"};
+
+/// What reading a file takes for each of its bytes, as measured of a million triangles.
+constexpr std::uint64_t bytes_to_text_byte = 4;
 
 constexpr std::string_view blanks = " \t\v\f";
 
@@ -322,6 +326,7 @@ private:
 ObjMesh read_obj_mesh(const std::filesystem::path& file, const ObjOptions& options) {
     std::string text = read_whole_file(file, file.string());
     if (text.starts_with("\xef\xbb\xbf")) text.replace(0, 3, "   ");  // a byte order mark
+    require_memory_for(file.string(), bytes_to_text_byte * text.size());
     const Counts counts = check_lines(text, file);
     Faces faces = read_faces(text, file, counts);
     const VertexData data = parse_vertex_data(text, file);

@@ -1,4 +1,4 @@
-#include "experiment/control_group.h"
+#include "core/control_group.h"
 
 #include <algorithm>
 #include <fstream>
@@ -142,7 +142,8 @@ std::optional<MemoryLeft> memory_left_by_control_groups(const std::filesystem::p
             while (true) {
                 const std::filesystem::path folder = mount.folder / path;
                 const auto left = left_in(folder, mount.version);
-                if (left && (!least || *left < least->bytes)) least = {*left, (path.empty() ? mount.top : mount.top / path).string()};
+                if (left && (!least || *left < least->bytes))
+                    least = {*left, (path.empty() ? mount.top : mount.top / path).string()};
                 if (path.empty()) break;
                 path = path.parent_path();
                 // In version 1 a group may keep out of what is below it.

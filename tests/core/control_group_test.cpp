@@ -1,11 +1,13 @@
 // Trees of files as kernels and containers show them: what /proc/self/cgroup and /proc/self/mountinfo say is copied
 // from the systems that are named.
 
-#include "experiment/control_group.h"
+#include "core/control_group.h"
 
 #include <gtest/gtest.h>
 
-#include "test_folder.h"
+#include <fstream>
+
+#include "tests/image/scratch_folder.h"
 
 namespace photonlab {
 namespace {
@@ -14,34 +16,37 @@ constexpr double mebibyte = 1024.0 * 1024.0;
 
 class ControlGroup : public ::testing::Test {
 protected:
+    void write(const std::string& name, const std::string& text) const {
+        std::filesystem::create_directories((folder_ / name).parent_path());
+        std::ofstream(folder_ / name) << text;
+    }
     /// A group of version 2 that uses 100 MiB, 30 of them files that the kernel can drop; `high` may be empty.
     void group_two(const std::string& folder, const std::string& most, const std::string& high = "max") {
-        folder_.write(folder + "/memory.max", most + "\n");
-        folder_.write(folder + "/memory.high", high + "\n");
-        folder_.write(folder + "/memory.current", mebibytes(100) + "\n");
-        folder_.write(folder + "/memory.stat",
-                      "anon 5\nfile 7\ninactive_anon 3\nactive_file 11\ninactive_file " + mebibytes(30) + "\nslab 9\n");
+        write(folder + "/memory.max", most + "\n");
+        write(folder + "/memory.high", high + "\n");
+        write(folder + "/memory.current", mebibytes(100) + "\n");
+        write(folder + "/memory.stat",
+              "anon 5\nfile 7\ninactive_anon 3\nactive_file 11\ninactive_file " + mebibytes(30) + "\nslab 9\n");
     }
     /// The same of version 1, where `inactive_file` is the group's alone and `total_inactive_file` of all below, too.
     void group_one(const std::string& folder, const std::string& limit, const std::string& use_hierarchy = "1") {
-        folder_.write(folder + "/memory.limit_in_bytes", limit + "\n");
-        folder_.write(folder + "/memory.usage_in_bytes", mebibytes(100) + "\n");
-        folder_.write(folder + "/memory.use_hierarchy", use_hierarchy + "\n");
-        folder_.write(folder + "/memory.stat",
-                      "cache 5\ninactive_file 1\nhierarchical_memory_limit 3\ntotal_inactive_file " + mebibytes(30) +
-                          "\ntotal_active_file 9\n");
+        write(folder + "/memory.limit_in_bytes", limit + "\n");
+        write(folder + "/memory.usage_in_bytes", mebibytes(100) + "\n");
+        write(folder + "/memory.use_hierarchy", use_hierarchy + "\n");
+        write(folder + "/memory.stat", "cache 5\ninactive_file 1\nhierarchical_memory_limit 3\ntotal_inactive_file " +
+                                           mebibytes(30) + "\ntotal_active_file 9\n");
     }
     static std::string mebibytes(int count) { return std::to_string(count * (1 << 20)); }
     void process(const std::string& cgroup, const std::string& mountinfo) {
-        folder_.write("proc/self/cgroup", cgroup);
-        folder_.write("proc/self/mountinfo", mountinfo);
+        write("proc/self/cgroup", cgroup);
+        write("proc/self/mountinfo", mountinfo);
     }
     std::string found() {
         const auto left = memory_left_by_control_groups(folder_ / "");
         return left ? left->group + " leaves " + std::to_string(left->bytes / mebibyte).substr(0, 6) : "no limit";
     }
 
-    TestFolder folder_;
+    const ScratchFolder folder_;
     const std::string two_ = "35 24 0:30 / /sys/fs/cgroup rw,nosuid,nodev shared:9 - cgroup2 cgroup2 rw,nsdelegate\n";
     const std::string unlimited_ = "9223372036854771712";  // of version 1: all pages that there can be
 };
@@ -118,7 +123,7 @@ TEST_F(ControlGroup, InAMixedSystemTheMemoryControllersHierarchyCounts) {
             "31 23 0:28 / /sys/fs/cgroup rw,relatime - tmpfs tmpfs rw,mode=755\n"
             "35 31 0:32 / /sys/fs/cgroup/memory rw,relatime - cgroup cgroup rw,memory\n"
             "41 31 0:38 / /sys/fs/cgroup/unified rw,relatime - cgroup2 cgroup2 rw\n");
-    folder_.write("sys/fs/cgroup/unified/jobs/a/cgroup.procs", "1\n");
+    write("sys/fs/cgroup/unified/jobs/a/cgroup.procs", "1\n");
     group_one("sys/fs/cgroup/memory/jobs/a", unlimited_);
     group_one("sys/fs/cgroup/memory/jobs", mebibytes(200));
     group_one("sys/fs/cgroup/memory", unlimited_);
