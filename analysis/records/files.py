@@ -96,7 +96,7 @@ def is_there(file):
 
 
 # Writing. Temporary names, and the lock by which one that is being written is told from one that a killed process left, are those
-# of the program (src/core/temporary_file.h), so that each removes what the other left.
+# of the program (src/core/files/temporary_file.h), so that each removes what the other left.
 
 INFIX = ".partial-"    # followed by random digits
 DIGITS = 16            # hexadecimal

@@ -1,5 +1,5 @@
 """How a results folder's files are known again: by their size and the hash of their bytes, XXH3 of 128 bits, which the program wrote
-down where it names them (src/experiment/kept_files.h). What is read here is what was written, or is refused.
+down where it names them (src/core/files/kept_files.h). What is read here is what was written, or is refused.
 
 Folders of programs before this was so have no stamps; theirs are read as they are.
 """

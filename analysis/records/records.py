@@ -112,7 +112,7 @@ def with_numbers(file, rows, described):
 
 def read_merged(results, name):
     """(bytes of a table that was merged from those of the runs, whether merged.json says what it is). The program replaces the table
-    and merged.json one after the other, so what does not fit is read again. (src/experiment/merged_records.h)"""
+    and merged.json one after the other, so what does not fit is read again. (src/record/merged_records.h)"""
     file, description = results / name, results / "merged.json"
     for attempt in range(5):
         data = files.read_bytes(file)

@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "core/nearest.h"
-#include "core/number_in.h"
+#include "core/text/nearest.h"
+#include "core/text/number_in.h"
 
 namespace photonlab {
 

@@ -8,11 +8,11 @@
 
 #include "app/commands.h"
 #include "core/error.h"
-#include "core/messages.h"
-#include "core/nearest.h"
-#include "experiment/reference.h"
+#include "core/text/messages.h"
+#include "core/text/nearest.h"
 #include "image/exr.h"
 #include "integrators/settings.h"
+#include "reference/reference.h"
 
 namespace photonlab {
 

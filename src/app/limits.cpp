@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
-#include "core/available_memory.h"
 #include "core/error.h"
+#include "core/machine/available_memory.h"
 
 namespace photonlab {
 

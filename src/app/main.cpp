@@ -20,8 +20,8 @@
 #include "app/interruption.h"
 #include "app/limits.h"
 #include "core/error.h"
-#include "core/messages.h"
-#include "experiment/version.h"
+#include "core/machine/version.h"
+#include "core/text/messages.h"
 
 namespace {
 

@@ -12,8 +12,8 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "core/files.h"
-#include "core/number_in.h"
+#include "core/files/files.h"
+#include "core/text/number_in.h"
 #include "integrators/registry.h"
 
 namespace photonlab {

@@ -9,11 +9,12 @@
 #include "app/interruption.h"
 #include "app/limits.h"
 #include "app/options.h"
-#include "core/files.h"
-#include "core/messages.h"
+#include "core/files/files.h"
+#include "core/parallel.h"
+#include "core/text/messages.h"
 #include "experiment/experiment_file.h"
-#include "experiment/progress.h"
-#include "experiment/reference_store.h"
+#include "experiment/resources/progress.h"
+#include "reference/reference_store.h"
 #include "scene/loader.h"
 
 namespace photonlab {

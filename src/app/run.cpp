@@ -9,7 +9,7 @@
 #include "app/interruption.h"
 #include "app/limits.h"
 #include "app/options.h"
-#include "core/messages.h"
+#include "core/text/messages.h"
 #include "experiment/experiment_file.h"
 #include "experiment/experiment_runs.h"
 

@@ -9,7 +9,7 @@
 
 #include "app/commands.h"
 #include "core/error.h"
-#include "core/messages.h"
+#include "core/text/messages.h"
 #include "experiment/verify_results.h"
 
 namespace photonlab {

@@ -9,12 +9,14 @@
 #include <thread>
 
 #include "core/error.h"
-#include "core/files.h"
-#include "core/nearest.h"
-#include "core/text.h"
+#include "core/files/files.h"
+#include "core/parallel.h"
+#include "core/text/nearest.h"
+#include "core/text/text.h"
 #include "experiment/toml.h"
 #include "experiment/toml_nesting.h"
 #include "integrators/registry.h"
+#include "transport/camera_pass.h"
 
 namespace photonlab {
 
@@ -453,17 +455,6 @@ std::vector<std::uint64_t> powers_of_two(std::uint64_t passes) {
     result.push_back(passes);
     sort_unique(result);
     return result;
-}
-
-int hardware_threads() {
-    return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-}
-
-void require_perfect_square(std::int64_t samples_per_pixel) {
-    const auto side = std::llround(std::sqrt(static_cast<double>(samples_per_pixel)));
-    if (samples_per_pixel < 1 || side > 1024 || side * side != samples_per_pixel)
-        throw InputError(
-            fmt::format("samples_per_pixel: expected a perfect square from 1 to 1048576, got {}", samples_per_pixel));
 }
 
 }  // namespace photonlab

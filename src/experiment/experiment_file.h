@@ -95,10 +95,4 @@ Experiment read_experiment(const std::filesystem::path& file, std::optional<Smok
 /// Passes 0, 1, 2, 4, ... and the last.
 std::vector<std::uint64_t> powers_of_two(std::uint64_t passes);
 
-/// Threads that the machine can run at once.
-int hardware_threads();
-
-/// Throws InputError unless `samples_per_pixel` is the square of a whole number, at most 1024^2.
-void require_perfect_square(std::int64_t samples_per_pixel);
-
 }  // namespace photonlab

@@ -9,15 +9,15 @@
 #include <tuple>
 
 #include "core/hash.h"
-#include "core/nearest.h"
-#include "experiment/progress.h"
-#include "experiment/recorder.h"
-#include "experiment/reference.h"
+#include "core/machine/version.h"
+#include "core/text/nearest.h"
+#include "experiment/resources/progress.h"
 #include "experiment/results_folder.h"
-#include "experiment/run_record.h"
-#include "experiment/settings_json.h"
-#include "experiment/version.h"
 #include "integrators/registry.h"
+#include "record/recorder.h"
+#include "record/run_record.h"
+#include "record/settings_json.h"
+#include "reference/reference.h"
 #include "scene/loader.h"
 
 namespace photonlab {

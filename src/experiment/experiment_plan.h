@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "core/files/kept_files.h"
 #include "experiment/experiment_file.h"
-#include "experiment/kept_files.h"
-#include "experiment/memory.h"
-#include "experiment/reference.h"
+#include "experiment/resources/memory.h"
+#include "experiment/resources/time_estimate.h"
 #include "experiment/run_group.h"
-#include "experiment/time_estimate.h"
+#include "reference/reference.h"
 #include "scene/scene.h"
 
 namespace photonlab {

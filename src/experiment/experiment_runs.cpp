@@ -10,14 +10,14 @@
 #include <thread>
 
 #include "core/error.h"
-#include "core/file_lock.h"
-#include "core/files.h"
-#include "core/messages.h"
-#include "experiment/merged_records.h"
-#include "experiment/progress.h"
-#include "experiment/reference.h"
+#include "core/files/file_lock.h"
+#include "core/files/files.h"
+#include "core/text/messages.h"
+#include "experiment/resources/progress.h"
 #include "experiment/results_folder.h"
-#include "experiment/run_record.h"
+#include "record/merged_records.h"
+#include "record/run_record.h"
+#include "reference/reference.h"
 #include "transport/plain_images.h"
 
 namespace photonlab {

@@ -26,8 +26,8 @@
 
 #include "experiment/experiment_file.h"
 #include "experiment/experiment_plan.h"
-#include "experiment/merged_records.h"
 #include "experiment/run_group.h"
+#include "record/merged_records.h"
 
 namespace photonlab {
 

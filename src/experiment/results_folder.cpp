@@ -7,12 +7,12 @@
 #include <optional>
 #include <string>
 
-#include "core/csv.h"
-#include "core/files.h"
-#include "experiment/json.h"
-#include "experiment/kept_files.h"
-#include "experiment/recorder.h"
-#include "experiment/version.h"
+#include "core/files/files.h"
+#include "core/files/json.h"
+#include "core/files/kept_files.h"
+#include "core/machine/version.h"
+#include "core/text/csv.h"
+#include "record/recorder.h"
 
 namespace photonlab {
 

@@ -6,14 +6,14 @@
 #include <chrono>
 #include <optional>
 
-#include "core/csv.h"
-#include "core/file_lock.h"
-#include "core/files.h"
-#include "experiment/merged_records.h"
-#include "experiment/progress.h"
-#include "experiment/recorder.h"
-#include "experiment/run_record.h"
+#include "core/files/file_lock.h"
+#include "core/files/files.h"
+#include "core/text/csv.h"
+#include "experiment/resources/progress.h"
 #include "image/exr.h"
+#include "record/merged_records.h"
+#include "record/recorder.h"
+#include "record/run_record.h"
 
 namespace photonlab {
 

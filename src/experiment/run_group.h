@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "core/file_lock.h"
-#include "experiment/checkpoint.h"
-#include "experiment/ensemble.h"
+#include "core/files/file_lock.h"
 #include "experiment/experiment_file.h"
-#include "experiment/reference.h"
+#include "record/ensemble.h"
+#include "reference/reference.h"
+#include "render/checkpoint.h"
 #include "render/run_methods.h"
 #include "scene/scene.h"
 #include "transport/camera_pass.h"
@@ -73,8 +73,8 @@ struct FinishedRunState {
 };
 
 struct GroupOutcome {
-    bool is_finished = false;            ///< false: interrupted, and saved
-    std::uint64_t passes = 0;            ///< done
+    bool is_finished = false;                 ///< false: interrupted, and saved
+    std::uint64_t passes = 0;                 ///< done
     std::vector<FinishedRunState> runs = {};  ///< when they are finished
 };
 

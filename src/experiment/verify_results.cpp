@@ -9,17 +9,17 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "core/files.h"
-#include "core/number_in.h"
-#include "core/text.h"
-#include "experiment/checkpoint.h"
-#include "experiment/ensemble.h"
-#include "experiment/kept_files.h"
-#include "experiment/merged_records.h"
-#include "experiment/reference.h"
+#include "core/files/files.h"
+#include "core/files/kept_files.h"
+#include "core/text/number_in.h"
+#include "core/text/text.h"
 #include "experiment/results_folder.h"
-#include "experiment/run_record.h"
 #include "image/exr.h"
+#include "record/ensemble.h"
+#include "record/merged_records.h"
+#include "record/run_record.h"
+#include "reference/reference.h"
+#include "render/checkpoint.h"
 
 namespace photonlab {
 

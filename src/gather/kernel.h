@@ -9,7 +9,7 @@
 #include <array>
 
 #include "core/math.h"
-#include "core/names.h"
+#include "core/text/names.h"
 
 namespace photonlab {
 

@@ -10,7 +10,7 @@
 #include <cstdint>
 
 #include "core/math.h"
-#include "core/names.h"
+#include "core/text/names.h"
 
 namespace photonlab {
 

@@ -22,11 +22,11 @@
 #include <set>
 #include <string_view>
 
-#include "core/available_memory.h"
 #include "core/error.h"
-#include "core/files.h"
+#include "core/files/files.h"
 #include "core/hash.h"
-#include "core/number_in.h"
+#include "core/machine/available_memory.h"
+#include "core/text/number_in.h"
 
 namespace photonlab {
 

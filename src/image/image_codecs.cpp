@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 #include <sys/mman.h>
 
-#include "core/available_memory.h"
 #include "core/error.h"
+#include "core/machine/available_memory.h"
 
 namespace photonlab {
 

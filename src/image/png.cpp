@@ -6,7 +6,7 @@
 #include <iterator>
 
 #include "core/error.h"
-#include "core/temporary_file.h"
+#include "core/files/temporary_file.h"
 #include "image/image_codecs.h"
 
 namespace photonlab {

@@ -1,6 +1,6 @@
 #include "image/read_image.h"
 
-#include "core/files.h"
+#include "core/files/files.h"
 #include "image/image_codecs.h"
 
 namespace photonlab {

@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
+#include "core/files/state_archive.h"
 #include "core/random.h"
-#include "core/state_archive.h"
 #include "gather/photon_map.h"
 #include "integrators/settings.h"
 #include "scene/scene.h"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/nearest.h"
+#include "core/text/nearest.h"
 #include "integrators/density_estimate.h"
 #include "integrators/integrator_list.h"
 #include "integrators/settings_table.h"

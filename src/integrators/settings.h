@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "core/names.h"
+#include "core/text/names.h"
 #include "gather/kernel.h"
 #include "gather/radius_schedule.h"
 #include "transport/camera_pass.h"

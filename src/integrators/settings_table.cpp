@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/number_in.h"
+#include "core/text/number_in.h"
 
 namespace photonlab {
 

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/files/state_archive.h"
 #include "core/random.h"
-#include "core/state_archive.h"
 #include "integrators/integrator.h"
 
 namespace photonlab {

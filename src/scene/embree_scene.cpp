@@ -9,7 +9,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "core/available_memory.h"
+#include "core/machine/available_memory.h"
 
 namespace photonlab {
 

@@ -14,7 +14,7 @@
 
 #include "core/error.h"
 #include "core/hash.h"
-#include "core/text.h"
+#include "core/text/text.h"
 #include "scene/emitters/light_reader.h"
 #include "scene/materials/material_reader.h"
 #include "scene/mitsuba/properties.h"

@@ -1,5 +1,9 @@
 #include "transport/camera_pass.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include <algorithm>
 #include <utility>
 
@@ -200,6 +204,13 @@ std::vector<ColorD> emission_image(const HitPoints& hit_points, int max_depth) {
     for (const SeenEmission& seen : hit_points.emission)
         if (depth_allows(max_depth, seen.edges)) image[seen.pixel] += seen.radiance;
     return image;
+}
+
+void require_perfect_square(std::int64_t samples_per_pixel) {
+    const auto side = std::llround(std::sqrt(static_cast<double>(samples_per_pixel)));
+    if (samples_per_pixel < 1 || side > 1024 || side * side != samples_per_pixel)
+        throw InputError(
+            fmt::format("samples_per_pixel: expected a perfect square from 1 to 1048576, got {}", samples_per_pixel));
 }
 
 }  // namespace photonlab

@@ -52,6 +52,9 @@ HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int thread
 HitPoints trace_hit_points(const Scene& scene, const Camera& camera, int samples_per_pixel, int threads,
                            double branch_cutoff);
 
+/// Throws InputError unless `samples_per_pixel` is the square of a whole number, at most 1024^2.
+void require_perfect_square(std::int64_t samples_per_pixel);
+
 inline std::size_t pixel_count(const HitPoints& hit_points) {
     return static_cast<std::size_t>(hit_points.width) * static_cast<std::size_t>(hit_points.height);
 }

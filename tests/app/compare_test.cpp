@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "experiment/reference.h"
 #include "image/exr.h"
+#include "reference/reference.h"
 #include "tests/app/program.h"
 
 namespace photonlab {

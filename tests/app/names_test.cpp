@@ -3,7 +3,7 @@
 
 #include <sys/stat.h>
 
-#include "core/text.h"
+#include "core/text/text.h"
 #include "tests/app/program.h"
 #include "tests/support/results.h"
 

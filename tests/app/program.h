@@ -16,9 +16,9 @@
 #include <thread>
 #include <vector>
 
-#include "core/files.h"
-#include "experiment/reference_store.h"
-#include "tests/experiment/test_folder.h"
+#include "core/files/files.h"
+#include "reference/reference_store.h"
+#include "tests/support/two_walls.h"
 
 namespace photonlab {
 

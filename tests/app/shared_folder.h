@@ -11,8 +11,8 @@
 #include <random>
 #include <set>
 
-#include "core/file_lock.h"
-#include "experiment/recorder.h"
+#include "core/files/file_lock.h"
+#include "record/recorder.h"
 #include "tests/app/program.h"
 #include "tests/support/results.h"
 

@@ -1,7 +1,7 @@
 // Trees of files as kernels and containers show them: what /proc/self/cgroup and /proc/self/mountinfo say is copied
 // from the systems that are named.
 
-#include "core/control_group.h"
+#include "core/machine/control_group.h"
 
 #include <gtest/gtest.h>
 

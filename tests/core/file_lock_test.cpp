@@ -1,4 +1,4 @@
-#include "core/file_lock.h"
+#include "core/files/file_lock.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "core/error.h"
-#include "core/files.h"
+#include "core/files/files.h"
 #include "tests/image/scratch_folder.h"
 
 namespace photonlab {

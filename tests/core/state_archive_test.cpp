@@ -1,4 +1,4 @@
-#include "core/state_archive.h"
+#include "core/files/state_archive.h"
 
 #include <gtest/gtest.h>
 

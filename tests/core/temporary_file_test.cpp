@@ -1,4 +1,4 @@
-#include "core/temporary_file.h"
+#include "core/files/temporary_file.h"
 
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -10,8 +10,8 @@
 #include <set>
 
 #include "core/error.h"
-#include "core/files.h"
-#include "core/text.h"
+#include "core/files/files.h"
+#include "core/text/text.h"
 #include "tests/image/scratch_folder.h"
 
 namespace photonlab {

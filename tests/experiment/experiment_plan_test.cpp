@@ -11,7 +11,7 @@
 #include <map>
 
 #include "experiment/experiment_runs.h"
-#include "test_folder.h"
+#include "tests/support/two_walls.h"
 
 namespace photonlab {
 namespace {

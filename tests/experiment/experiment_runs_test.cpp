@@ -5,11 +5,11 @@
 #include <cmath>
 #include <map>
 
-#include "experiment/recorder.h"
-#include "experiment/reference_store.h"
 #include "image/exr.h"
-#include "test_folder.h"
+#include "record/recorder.h"
+#include "reference/reference_store.h"
 #include "tests/support/results.h"
+#include "tests/support/two_walls.h"
 
 namespace photonlab {
 namespace {

@@ -1,15 +1,15 @@
 // What is merged while other processes replace runs, and what is said of finished runs that are left out.
 
-#include "experiment/merged_records.h"
+#include "record/merged_records.h"
 
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <thread>
 
-#include "experiment/recorder.h"
-#include "experiment/run_record.h"
-#include "test_folder.h"
+#include "record/recorder.h"
+#include "record/run_record.h"
+#include "tests/support/test_folder.h"
 
 namespace photonlab {
 namespace {

@@ -1,4 +1,4 @@
-#include "experiment/progress.h"
+#include "experiment/resources/progress.h"
 
 #include <gtest/gtest.h>
 

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "core/csv.h"
-#include "experiment/columns.h"
-#include "test_folder.h"
+#include "core/text/csv.h"
+#include "record/columns.h"
+#include "tests/support/test_folder.h"
 
 namespace photonlab {
 namespace {

@@ -7,9 +7,9 @@
 #include <set>
 
 #include "experiment/experiment_runs.h"
-#include "experiment/reference_store.h"
-#include "test_folder.h"
+#include "reference/reference_store.h"
 #include "tests/support/results.h"
+#include "tests/support/two_walls.h"
 
 namespace photonlab {
 namespace {

@@ -1,8 +1,8 @@
-#include "experiment/time_estimate.h"
+#include "experiment/resources/time_estimate.h"
 
 #include <gtest/gtest.h>
 
-#include "test_folder.h"
+#include "tests/support/two_walls.h"
 
 namespace photonlab {
 namespace {

@@ -10,10 +10,10 @@
 #include <map>
 
 #include "experiment/experiment_runs.h"
-#include "experiment/run_record.h"
 #include "image/exr.h"
-#include "test_folder.h"
+#include "record/run_record.h"
 #include "tests/support/results.h"
+#include "tests/support/two_walls.h"
 
 namespace photonlab {
 namespace {

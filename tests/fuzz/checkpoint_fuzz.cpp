@@ -1,7 +1,7 @@
 // Checkpoints: where the input begins with an odd byte, the rest is the state of a sound checkpoint, with its signature
 // and checksum made here, for no mutation would guess the latter; else it is the whole file.
 
-#include "experiment/checkpoint.h"
+#include "render/checkpoint.h"
 
 #include <optional>
 #include <sstream>

@@ -1,7 +1,7 @@
 // reference.json, and what is read from it without another look.
 
-#include "experiment/reference.h"
-#include "experiment/reference_store.h"
+#include "reference/reference.h"
+#include "reference/reference_store.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace photonlab;

@@ -2,11 +2,11 @@
 // checksum that no mutation would guess; else it is the whole file. It is tried as run.json, merged.json and
 // ensemble.json of a folder that holds a run's rows.
 
-#include "experiment/kept_files.h"
-#include "experiment/merged_records.h"
-#include "experiment/recorder.h"
-#include "experiment/run_record.h"
+#include "core/files/kept_files.h"
 #include "experiment/verify_results.h"
+#include "record/merged_records.h"
+#include "record/recorder.h"
+#include "record/run_record.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace photonlab;

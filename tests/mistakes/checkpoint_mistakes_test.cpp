@@ -1,6 +1,6 @@
 // Checkpoints that are none. That every changed byte and every length is noticed is tested with the checkpoints.
 
-#include "experiment/checkpoint.h"
+#include "render/checkpoint.h"
 
 #include <sys/stat.h>
 

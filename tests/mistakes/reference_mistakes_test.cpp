@@ -5,9 +5,9 @@
 #include <functional>
 
 #include "core/hash.h"
-#include "experiment/reference.h"
-#include "experiment/reference_store.h"
 #include "image/exr.h"
+#include "reference/reference.h"
+#include "reference/reference_store.h"
 #include "tests/mistakes/mistakes.h"
 
 namespace photonlab::test {

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "integrators/registry.h"
-#include "tests/experiment/test_folder.h"
+#include "tests/support/two_walls.h"
 
 namespace photonlab {
 namespace {
@@ -191,7 +191,8 @@ TEST_F(Runner, TellsWhatIsGatheredAtAHitPoint) {
         std::size_t hit_point = 40;
         run_methods(
             scene_, hit_points_, {{method, 3, 6, 1, {0, 2, 6}}},
-            [&](std::size_t, const RunState&, const Image& estimated) { image = estimated; }, [](std::uint64_t, bool) {},
+            [&](std::size_t, const RunState&, const Image& estimated) { image = estimated; },
+            [](std::uint64_t, bool) {},
             [&](std::size_t, std::uint64_t pass, const Integrator& running) {
                 passes.push_back(pass);
                 last = running.gather_state(hit_point).value();

@@ -16,7 +16,7 @@
 
 #include "integrators/registry.h"
 #include "integrators/settings_table.h"
-#include "experiment/columns.h"
+#include "record/columns.h"
 
 namespace photonlab {
 

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "core/files.h"
-#include "experiment/json.h"
+#include "core/files/files.h"
+#include "core/files/json.h"
 #include "image/exr.h"
 
 namespace photonlab {

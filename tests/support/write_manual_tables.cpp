@@ -1,6 +1,6 @@
 // The target `manual`: brings the tables of docs/manual.md up to date.
 
-#include "core/files.h"
+#include "core/files/files.h"
 #include "tests/support/manual_tables.h"
 
 int main() {

@@ -12,9 +12,9 @@
 #include <set>
 
 #include "core/error.h"
-#include "core/files.h"
-#include "core/number_in.h"
-#include "core/text.h"
+#include "core/files/files.h"
+#include "core/text/number_in.h"
+#include "core/text/text.h"
 
 namespace photonlab {
 

@@ -20,9 +20,9 @@
 #include <string_view>
 #include <tuple>
 
-#include "core/available_memory.h"
 #include "core/error.h"
-#include "core/number_in.h"
+#include "core/machine/available_memory.h"
+#include "core/text/number_in.h"
 
 namespace photonlab {
 

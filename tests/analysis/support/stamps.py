@@ -1,4 +1,4 @@
-"""Makes a folder of made-up results one of a program that writes down what each file is (src/experiment/kept_files.h), from the
+"""Makes a folder of made-up results one of a program that writes down what each file is (src/core/files/kept_files.h), from the
 description of the format alone."""
 
 import csv
