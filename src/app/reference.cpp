@@ -12,8 +12,8 @@
 #include "core/files/files.h"
 #include "core/parallel.h"
 #include "core/text/messages.h"
+#include "core/text/progress.h"
 #include "experiment/experiment_file.h"
-#include "experiment/resources/progress.h"
 #include "reference/reference_store.h"
 #include "scene/loader.h"
 

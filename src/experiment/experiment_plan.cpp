@@ -11,7 +11,7 @@
 #include "core/hash.h"
 #include "core/machine/version.h"
 #include "core/text/nearest.h"
-#include "experiment/resources/progress.h"
+#include "core/text/progress.h"
 #include "experiment/results_folder.h"
 #include "integrators/registry.h"
 #include "record/recorder.h"

@@ -11,10 +11,10 @@
 
 #include "core/files/kept_files.h"
 #include "experiment/experiment_file.h"
-#include "experiment/resources/memory.h"
-#include "experiment/resources/time_estimate.h"
 #include "experiment/run_group.h"
 #include "reference/reference.h"
+#include "render/estimates/memory.h"
+#include "render/estimates/time_estimate.h"
 #include "scene/scene.h"
 
 namespace photonlab {

@@ -13,7 +13,7 @@
 #include "core/files/file_lock.h"
 #include "core/files/files.h"
 #include "core/text/messages.h"
-#include "experiment/resources/progress.h"
+#include "core/text/progress.h"
 #include "experiment/results_folder.h"
 #include "record/merged_records.h"
 #include "record/run_record.h"

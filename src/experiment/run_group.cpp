@@ -9,7 +9,7 @@
 #include "core/files/file_lock.h"
 #include "core/files/files.h"
 #include "core/text/csv.h"
-#include "experiment/resources/progress.h"
+#include "core/text/progress.h"
 #include "image/exr.h"
 #include "record/merged_records.h"
 #include "record/recorder.h"

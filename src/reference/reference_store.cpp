@@ -14,9 +14,9 @@
 #include "core/hash.h"
 #include "core/machine/version.h"
 #include "core/text/number_in.h"
-#include "experiment/resources/memory.h"
 #include "image/exr.h"
 #include "reference/reference_check.h"
+#include "render/estimates/memory.h"
 #include "render/pass_loop.h"
 
 namespace photonlab {

@@ -25,8 +25,10 @@ TEST_F(CommandLine, MisspeltCommandsAreAnsweredWithTheNearest) {
     EXPECT_EQ(refusal_of({"rnu", "--nonsense", "x"}), "there is no command \"rnu\"; did you mean \"run\"?\n");
     EXPECT_EQ(refusal_of({"Compare", "a", "b"}), "there is no command \"Compare\"; did you mean \"compare\"?\n");
     EXPECT_EQ(refusal_of({"help", "rednr"}), "there is no command \"rednr\"; did you mean \"render\"?\n");
-    EXPECT_EQ(refusal_of({"walk"}), "there is no command \"walk\"; expected render, run, reference, compare, info, verify\n");
-    EXPECT_EQ(refusal_of({}), "expected a command: render, run, reference, compare, info, verify; photonlab help says more\n");
+    EXPECT_EQ(refusal_of({"walk"}),
+              "there is no command \"walk\"; expected render, run, reference, compare, info, verify\n");
+    EXPECT_EQ(refusal_of({}),
+              "expected a command: render, run, reference, compare, info, verify; photonlab help says more\n");
 }
 
 TEST_F(CommandLine, MisspeltOptionsAreAnsweredBeforeWhatIsMissing) {

@@ -81,10 +81,10 @@ void write_by_photons() {
         const PointState exact{1.0 / std::sqrt(n + 1.0), alpha * n, 7.0};
         write_row("photons", n, "program",
                   {std::sqrt(statistics.squared_radius), statistics.count, statistics.estimate.x}, exact);
-        write_row("photons", n, "float",
-                  {std::sqrt(static_cast<double>(squared_radius)), static_cast<double>(count),
-                   static_cast<double>(estimate)},
-                  exact);
+        write_row(
+            "photons", n, "float",
+            {std::sqrt(static_cast<double>(squared_radius)), static_cast<double>(count), static_cast<double>(estimate)},
+            exact);
     }
 }
 

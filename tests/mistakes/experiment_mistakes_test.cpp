@@ -55,7 +55,7 @@ TEST(ExperimentMistakes, NamesWithoutEndAreRefusedByTheirLine) {
             std::string joined = name;
             for (std::size_t i = 1; i < count; ++i) joined += "." + name;
             for (const std::string& text : {"[" + joined + "]", "[[" + joined + "]]", joined + " = 1",
-                                           "a = {" + joined + " = 1}", "a = [{b = 1, " + joined + " = 1}]"})
+                                            "a = {" + joined + " = 1}", "a = [{b = 1, " + joined + " = 1}]"})
                 EXPECT_EQ(message(good + text + "\n"), "a.toml:5: expected at most 16 names joined by dots");
         }
     std::string inside;

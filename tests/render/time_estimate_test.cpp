@@ -1,4 +1,4 @@
-#include "experiment/resources/time_estimate.h"
+#include "render/estimates/time_estimate.h"
 
 #include <gtest/gtest.h>
 

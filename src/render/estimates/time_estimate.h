@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "experiment/resources/coarse_view.h"
+#include "render/estimates/coarse_view.h"
 #include "render/pass_loop.h"
 
 namespace photonlab {

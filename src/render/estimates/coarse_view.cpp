@@ -1,4 +1,4 @@
-#include "experiment/resources/coarse_view.h"
+#include "render/estimates/coarse_view.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "experiment/resources/memory.h"
+#include "render/estimates/memory.h"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 
 #include "core/error.h"
 #include "core/machine/available_memory.h"
-#include "experiment/resources/coarse_view.h"
 #include "gather/photon_map.h"
 #include "integrators/registry.h"
+#include "render/estimates/coarse_view.h"
 
 namespace photonlab {
 

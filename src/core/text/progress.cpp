@@ -1,4 +1,4 @@
-#include "experiment/resources/progress.h"
+#include "core/text/progress.h"
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
