@@ -8,7 +8,7 @@ import unittest
 
 import numpy as np
 
-SCENE = os.path.join(os.path.dirname(__file__), "..", "..", "scenes", "merl")
+SCENE = os.path.join(os.path.dirname(__file__), "..", "..", "..", "scenes", "merl")
 sys.path.insert(0, SCENE)
 
 import make_table  # noqa: E402
