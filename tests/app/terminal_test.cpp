@@ -63,8 +63,10 @@ protected:
                       "seeds = 3\n[[method]]\nintegrator = 'ppm'\nname = '" +
                           std::string(60, 'n') + "'\n");
         terminal_ = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
-        EXPECT_EQ(::grantpt(terminal_), 0);
-        EXPECT_EQ(::unlockpt(terminal_), 0);
+    }
+    void SetUp() override {
+        if (terminal_ < 0 || ::grantpt(terminal_) != 0 || ::unlockpt(terminal_) != 0)
+            GTEST_SKIP() << "this system has no pseudo-terminals";
     }
     ~OnTerminal() override { ::close(terminal_); }
 
