@@ -42,7 +42,7 @@ class Reading(InFolder):
         self.assertIn("this is a pipe or a device", self.refusal(files.read_bytes, "/dev/zero"))
         self.assertIn("cannot be read: No such file", self.refusal(files.read_bytes, self.folder / "none"))
         self.assertIn("cannot be read: File name too long", self.refusal(files.read_bytes, self.folder / ("x" * 256)))
-        self.assertIn("cannot be read: embedded null byte", self.refusal(files.read_bytes, self.folder / "a\0b"))
+        self.assertRegex(self.refusal(files.read_bytes, self.folder / "a\0b"), "cannot be read: .*embedded null")    # as this Python says it
 
     def test_a_link_to_a_pipe_is_a_pipe_and_a_dangling_one_is_there(self):
         os.mkfifo(self.folder / "pipe")
