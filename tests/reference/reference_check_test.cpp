@@ -225,7 +225,8 @@ TEST_F(ReferenceCheck, ComparingAgainChangesNeitherKeyNorHalves) {
     Json again = compare_reference_with_photons(scene, settings, folder_ / "reference");
     EXPECT_EQ(again.at("check").at("gathered"), check.at("gathered"));
     EXPECT_EQ(check_reference(folder_ / "reference", {scene.hash, 12, 8, 1, scene.max_depth}), key);
-    EXPECT_EQ(load_reference(folder_ / "reference", std::nullopt).check.verdict, check.at("verdict").get<std::string>());
+    EXPECT_EQ(load_reference(folder_ / "reference", std::nullopt).check.verdict,
+              check.at("verdict").get<std::string>());
     again.erase("check");
     EXPECT_EQ(again, old);
 
