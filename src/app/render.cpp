@@ -22,9 +22,7 @@
 #include "experiment/experiment_file.h"
 #include "experiment/experiment_plan.h"
 #include "experiment/run_group.h"
-#include "image/exr.h"
 #include "image/image_codecs.h"
-#include "image/png.h"
 #include "integrators/registry.h"
 #include "record/columns.h"
 #include "reference/reference.h"
@@ -220,20 +218,10 @@ RunFiles files_of(const RenderOptions& options, const std::string& key) {
     files.snapshot = [&options](std::uint64_t pass) {
         return pass == options.passes ? options.output : snapshot_file(options.output, pass);
     };
+    files.picture = options.png;
     files.checkpoint = {options.checkpoint, key + (options.csv.empty() ? "" : ", with rows"),
                         "remove it, or begin anew beside it with another --checkpoint"};
     return files;
-}
-
-/// What follows from the last image: a copy of it where its pass is a snapshot, too, and the picture.
-void write_rest(const RenderOptions& options, const std::vector<std::uint64_t>& snapshots) {
-    if (!snapshots.empty() && snapshots.back() == options.passes)
-        write_text_file(snapshot_file(options.output, options.passes), read_text_file(options.output));
-    if (!options.png.empty()) {
-        const Image image = read_exr(options.output);
-        write_png(options.png, image.width, image.height, total(image));
-    }
-    if (!options.csv.empty()) write_columns(columns_file(options.csv));
 }
 
 /// Makes the run with a progress line. Throws Interrupted when it was.
@@ -301,7 +289,9 @@ void render(const RenderOptions& options) {
     prepared.files = files_of(options, prepared.key);
     const FinishedRunState finished =
         make_run(options, {experiment, scene, hit_points, reference ? &*reference : nullptr, {}, {&prepared}});
-    write_rest(options, snapshots);
+    if (!options.csv.empty()) write_columns(columns_file(options.csv));
+    if (!snapshots.empty() && snapshots.back() == options.passes)
+        write_text_file(snapshot_file(options.output, options.passes), read_text_file(options.output));
 
     print_summary(finished.state, prepared.settings, scene, hit_points.points.size(), finished.errors);
     for (const std::string& reason : why_images_are_plain(scene, hit_points)) print_output("note        {}\n", reason);

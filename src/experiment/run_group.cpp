@@ -11,6 +11,7 @@
 #include "core/text/csv.h"
 #include "core/text/progress.h"
 #include "image/exr.h"
+#include "image/png.h"
 #include "record/merged_records.h"
 #include "record/recorder.h"
 #include "record/run_record.h"
@@ -269,6 +270,8 @@ GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options
                 write_exr(file, image, image_metadata(run.recorder.identity(), state, group.scene));
                 run.snapshots.push_back(stamp_of(file));
             }
+            if (state.pass == plan.passes && !run.files().picture.empty())
+                write_png(run.files().picture, image.width, image.height, total(image));
         },
         on_pass,
         [&](std::size_t method, std::uint64_t pass, const Integrator& integrator) {

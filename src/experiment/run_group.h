@@ -30,7 +30,8 @@ struct RunFiles {
     std::filesystem::path description = {};  ///< run.json
     std::filesystem::path snapshots = {};    ///< folder of its own for them
     std::function<std::filesystem::path(std::uint64_t pass)> snapshot;
-    Checkpoint checkpoint;  ///< its state while it is not finished
+    Checkpoint checkpoint = {};          ///< its state while it is not finished
+    std::filesystem::path picture = {};  ///< PNG of the last image
 };
 
 /// Those of a run in a folder of its own; `identity` is that of its checkpoint.

@@ -1,7 +1,5 @@
 #include "gather/radius_schedule.h"
 
-#include <fmt/format.h>
-
 namespace photonlab {
 
 double hachisuka_shrink(double alpha, double count, double found) {

@@ -62,6 +62,8 @@ auto of_photons(const Value& value) {
 // ---------------------------------------------------------------------------------------------------------------------
 // Settings. A length that can be automatic is recorded as what it came to in the scene.
 
+const std::vector<std::string_view> settings_of_hit_points{"samples_per_pixel", "width", "height", "branch_cutoff"};
+
 Column column_of(const SettingField& field) {
     Column column{.name = std::string(field.name),
                   .kind = Kind::Setting,
@@ -84,7 +86,6 @@ Column column_of(const SettingField& field) {
 std::vector<Column> columns_of(const SettingField& field) {
     Column column = column_of(field);
     if (field.type == SettingField::Type::Length) column.default_text.clear();
-    const std::vector<std::string_view> image{"samples_per_pixel", "width", "height", "branch_cutoff"};
     if (field.name == "radius") {
         Column rule = column;
         rule.name = "radius_rule";
@@ -102,7 +103,7 @@ std::vector<Column> columns_of(const SettingField& field) {
             return uses(record, "radius") ? number(record.state.initial_radius) : "";
         };
         column.follows = {"footprints"};
-        column.follows.insert(column.follows.end(), image.begin(), image.end());
+        column.follows.insert(column.follows.end(), settings_of_hit_points.begin(), settings_of_hit_points.end());
         return {rule, column};
     }
     if (field.name == "max_radius") column.value = max_radius;
@@ -148,7 +149,7 @@ std::vector<Column> columns_of_image() {
          .label = "hit points",
          .meaning = "hit points in all",
          .value = [](const Record& r) { return number(r.identity.hit_points); },
-         .follows = {"samples_per_pixel", "width", "height", "branch_cutoff"}},
+         .follows = settings_of_hit_points},
         {"seed", Kind::Identity, Type::Integer, "", "seed", "of all random numbers",
          [](const Record& r) { return number(r.identity.settings.seed); }},
         {"threads", Kind::Identity, Type::Integer, "", "threads", "results do not depend on it, to the bit",
