@@ -28,6 +28,9 @@ enum class RandomPurpose : std::uint8_t {
     ReferenceDirectA = 9,
     ReferenceDirectB = 10,
     ReferenceCheck = 11,
+    CameraPositions = 12,
+    ReferencePositionsA = 13,
+    ReferencePositionsB = 14,
 };
 
 class RandomStream {

@@ -38,4 +38,20 @@ inline double kernel_weight(Kernel kernel, double s_squared) {
     return 0.0;
 }
 
+/// c: where the light has Laplacian Delta, the estimate's bias is c r^2 Delta. A quarter of the kernel's mean squared
+/// relative distance; docs/theory.md, section 4.
+inline double bias_constant(Kernel kernel) {
+    switch (kernel) {
+        case Kernel::Disc:
+            return 1.0 / 8.0;
+        case Kernel::Cone:
+            return 3.0 / 40.0;
+        case Kernel::Epanechnikov:
+            return 1.0 / 12.0;
+        case Kernel::Biweight:
+            return 1.0 / 16.0;
+    }
+    return 0.0;
+}
+
 }  // namespace photonlab

@@ -2,6 +2,8 @@
 
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,10 +17,18 @@ struct Layer {
     std::vector<Color> pixels;  ///< row by row from the top: pixels[y * width + x]
 };
 
+/// What a method says of the error of its layer "gathered", without a reference: mean channel, a value a pixel.
+struct EstimatedError {
+    std::uint64_t passes = 0;      ///< that it was made of: their number less one are its degrees of freedom
+    std::vector<float> bias;       ///< expectation of image minus truth
+    std::vector<float> deviation;  ///< standard deviation of image minus bias; 0 after one pass, which knows none
+};
+
 struct Image {
     int width = 0;
     int height = 0;
     std::vector<Layer> layers;
+    std::optional<EstimatedError> estimated_error = std::nullopt;  ///< no layer: beside the picture
 
     /// The layer's pixels; nullptr when there is none of that name.
     const std::vector<Color>* find(std::string_view name) const;

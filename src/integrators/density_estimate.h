@@ -1,4 +1,4 @@
-// Density estimation at a hit point, shared by photonmapper and ppm: what the photons around it bring.
+// Density estimation at a hit point, shared by photonmapper, ppm and sppm: what the photons around it bring.
 //
 // L = sum over photons of f power K / (pi r^2 N), with N emitted paths; here everything but the division.
 // [Jensen 2001, equation 7.6; kernels: gather/kernel.h]
@@ -16,6 +16,7 @@
 #include "gather/photon_map.h"
 #include "gather/search_order.h"
 #include "integrators/integrator.h"
+#include "integrators/photon_moments.h"
 #include "scene/scene.h"
 #include "transport/hit_point_list.h"
 #include "transport/path_length.h"
@@ -34,17 +35,29 @@ public:
             glossy_.emplace(Glossy{bsdf, make_frame(point.normal), make_frame(point.normal).to_local(point.outgoing)});
     }
 
-    /// Takes a photon that was accepted at the point, with its kernel weight. A photon whose path would be deeper than
-    /// max_depth is not counted.
-    void add(const Photon& photon, double weight) {
-        if (!depth_allows(max_depth_, photon.edges + std::uint32_t{camera_edges_})) return;
+    /// False for a photon whose path would be deeper than max_depth: it is not counted.
+    bool counts(const Photon& photon) const {
+        return depth_allows(max_depth_, photon.edges + std::uint32_t{camera_edges_});
+    }
+
+    /// Flux times BRDF of a photon that was accepted at the point, but for factor().
+    ColorD carried(const Photon& photon) const {
+        if (!glossy_) return ColorD(photon.power);
+        const Vector incoming = glossy_->frame.to_local(photon.incoming.unit());
+        return ColorD(evaluate(glossy_->bsdf, glossy_->outgoing, incoming) * photon.power);
+    }
+
+    /// The BRDF where it is a constant; else 1.
+    ColorD factor() const { return glossy_ ? ColorD(1.0) : ColorD(uniform_); }
+
+    void add(const ColorD& carried, double kernel_weight) {
         ++count_;
-        if (glossy_) {
-            const Vector incoming = glossy_->frame.to_local(photon.incoming.unit());
-            sum_ += ColorD(evaluate(glossy_->bsdf, glossy_->outgoing, incoming) * photon.power) * weight;
-        } else {
-            sum_ += ColorD(photon.power) * weight;
-        }
+        sum_ += carried * kernel_weight;
+    }
+
+    /// The same from the photon, if it counts.
+    void add(const Photon& photon, double kernel_weight) {
+        if (counts(photon)) add(carried(photon), kernel_weight);
     }
 
     /// Relative to Scene::total_power, per steradian.
@@ -66,24 +79,52 @@ private:
     std::optional<Glossy> glossy_;
 };
 
-/// Everything within each hit point's own radius, weighted by the kernel: the sums of hit points [range.begin,
-/// range.end), one of the blocks, in order. `order` is that of `points`; `radius_of(index)` is in the unit box.
-template <typename RadiusOf>
-std::vector<FluxSum> gather_within(const PhotonMap& map, const Scene& scene, const HitPointList& points,
-                                   const SearchOrder& order, BlockRange range, const MethodSettings& settings,
-                                   const RadiusOf& radius_of) {
+/// What one gather finds at one hit point.
+template <typename Moments>
+struct PointGather {
+    FluxSum sum;
+    [[no_unique_address]] Moments moments;
+
+    PointGather(const Scene& scene, const HitPoint& point, int max_depth, const GatherReach& reach)
+        : sum(scene, point, max_depth), moments(point, reach) {}
+
+    /// Takes a photon that was accepted at the point within the reach.
+    void add(const Photon& photon, double squared_distance, const GatherReach& reach, Kernel kernel) {
+        if (!sum.counts(photon)) return;
+        const double squared_radius = reach.radius * reach.radius;
+        const ColorD carried = sum.carried(photon);
+        if constexpr (Moments::are_none) {
+            sum.add(carried, kernel_weight(kernel, std::min(1.0, squared_distance / squared_radius)));
+        } else {
+            const bool is_inside = squared_distance <= squared_radius;
+            const double weight = is_inside ? kernel_weight(kernel, squared_distance / squared_radius) : 0.0;
+            if (is_inside) sum.add(carried, weight);
+            moments.add({photon, squared_distance, carried, is_inside, weight});
+        }
+    }
+};
+
+/// Everything within each hit point's own reach: what is found at hit points [range.begin, range.end), one of the
+/// blocks, in order. `order` is that of `points`; `reach_of(index)` is in the unit box.
+template <typename Moments = NoMoments, typename ReachOf>
+std::vector<PointGather<Moments>> gather_within(const PhotonMap& map, const Scene& scene, const HitPointList& points,
+                                                const SearchOrder& order, BlockRange range,
+                                                const MethodSettings& settings, const ReachOf& reach_of) {
     const std::size_t count = range.end - range.begin;
     assert(range.begin % hit_points_per_block == 0);
     assert(count == std::min(hit_points_per_block, points.size() - range.begin));
     const std::span<const std::uint8_t> places = order.of_block(range);
-    std::vector<FluxSum> sums;
+    std::vector<PointGather<Moments>> gathered;
+    std::vector<GatherReach> reaches;
     std::vector<GatherQuery> in_list;
-    sums.reserve(count);
+    gathered.reserve(count);
+    reaches.reserve(count);
     in_list.reserve(count);
     for (std::size_t i = range.begin; i < range.end; ++i) {
         const HitPoint& point = points[i];
-        in_list.push_back({point.position, point.normal, radius_of(i)});
-        sums.emplace_back(scene, point, settings.max_depth);
+        const GatherReach& reach = reaches.emplace_back(reach_of(i));
+        in_list.push_back({point.position, point.normal, std::max(reach.radius, reach.bandwidth)});
+        gathered.emplace_back(scene, point, settings.max_depth, reach);
     }
     std::vector<GatherQuery> queries;
     queries.reserve(count);
@@ -91,12 +132,11 @@ std::vector<FluxSum> gather_within(const PhotonMap& map, const Scene& scene, con
     map.within_each(
         queries,
         [&](std::size_t query, const Photon& photon, double squared_distance) {
-            const double squared_radius = queries[query].radius * queries[query].radius;
-            sums[places[query]].add(photon,
-                                    kernel_weight(settings.kernel, std::min(1.0, squared_distance / squared_radius)));
+            const std::size_t place = places[query];
+            gathered[place].add(photon, squared_distance, reaches[place], settings.kernel);
         },
         settings.eps);
-    return sums;
+    return gathered;
 }
 
 /// Radii that can be asked for, in shares of the scene (unit box). Float positions near its walls are 3e-8 apart: a

@@ -11,6 +11,7 @@
 #include "core/files/state_archive.h"
 #include "core/random.h"
 #include "gather/photon_map.h"
+#include "image/image.h"
 #include "integrators/settings.h"
 #include "scene/scene.h"
 #include "transport/camera_pass.h"
@@ -19,10 +20,6 @@ namespace photonlab {
 
 /// What a method needs of the loop; it follows from the settings.
 struct Needs {
-    enum class Points {
-        Fixed,  ///< the same in every pass: the image converges to radiance at these positions
-        New,    ///< others in every pass
-    };
     enum class Photons {
         None,
         OfPass,       ///< a map over the photons of the pass
@@ -37,7 +34,8 @@ struct Needs {
         Independent,  ///< passes can be taken from any number on; the image is a mean over those that were taken
     };
 
-    Points points = Points::Fixed;
+    /// Other hit points in every pass; empty: the same in all, so that the image converges to radiance at these.
+    std::optional<NewPoints> new_points = std::nullopt;
     Photons photons = Photons::None;
     Direct direct = Direct::ByLoop;
     Passes passes = Passes::Ordered;
@@ -62,6 +60,7 @@ struct PhotonsOfAllPasses {
 struct MethodLayers {
     std::vector<Color> gathered;
     std::vector<Color> direct = {};  ///< with Needs::Direct::ByItself
+    std::optional<EstimatedError> estimated_error = std::nullopt;
 };
 
 /// What a method can say of itself between two passes. Radii in scene units; empty where it has no such thing.

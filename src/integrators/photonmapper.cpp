@@ -99,12 +99,12 @@ private:
         std::vector<std::uint64_t> gathered(blocks, 0);
         parallel_for(blocks, context_.threads, [&](std::size_t block) {
             const BlockRange range = block_range(block, points.size(), hit_points_per_block);
-            const std::vector<FluxSum> sums = settings_.mode == GatherMode::Radius
-                                                  ? gather_within(map, context_.scene, points, order_, range, settings_,
-                                                                  [&](std::size_t i) { return search.radii[i]; })
-                                                  : gather_nearest(map, search, range);
+            const auto found = settings_.mode == GatherMode::Radius
+                                   ? gather_within(map, context_.scene, points, order_, range, settings_,
+                                                   [&](std::size_t i) { return GatherReach{search.radii[i]}; })
+                                   : gather_nearest(map, search, range);
             for (std::size_t i = range.begin; i < range.end; ++i) {
-                const FluxSum& sum = sums[i - range.begin];
+                const FluxSum& sum = found[i - range.begin].sum;
                 radiance_[i] += sum.flux() / (pi * search.radii[i] * search.radii[i]);
                 search.counts[i] = static_cast<std::uint32_t>(sum.count());
                 gathered[block] += sum.count();
@@ -114,11 +114,11 @@ private:
     }
 
     /// The k nearest of each hit point; search.radii become those of the discs to divide by.
-    std::vector<FluxSum> gather_nearest(const PhotonMap& map, Search& search, BlockRange range) const {
-        std::vector<FluxSum> sums;
+    std::vector<PointGather<NoMoments>> gather_nearest(const PhotonMap& map, Search& search, BlockRange range) const {
+        std::vector<PointGather<NoMoments>> found;
         for (std::size_t i = range.begin; i < range.end; ++i) {
             const HitPoint& point = context_.hit_points.points[i];
-            FluxSum& sum = sums.emplace_back(context_.scene, point, settings_.max_depth);
+            FluxSum& sum = found.emplace_back(context_.scene, point, settings_.max_depth, GatherReach{}).sum;
             const NearestPhotons nearest = map.nearest(
                 point.position, point.normal, search.k, search.max_radius,
                 [&](const Photon& photon, double squared_distance, double squared_radius) {
@@ -127,7 +127,7 @@ private:
                 settings_.eps);
             search.radii[i] = std::sqrt(nearest.squared_radius);
         }
-        return sums;
+        return found;
     }
 
     const MethodSettings settings_;

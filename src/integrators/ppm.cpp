@@ -3,25 +3,23 @@
 //
 // Each pass makes a density estimate of its own at every hit point, with the radius before it shrinks, and the image is
 // the running mean of these: the same numbers as the 2008 paper's shrinking flux, to rounding, and stable over millions
-// of passes (docs/theory.md, section 1; a test shows it).
+// of passes (docs/theory.md, section 1; a test shows it). How the radius changes is a rule of gather/radius_rule.h.
 //
 // [Hachisuka, Ogaki & Jensen 2008, "Progressive Photon Mapping"; Knaus & Zwicker 2011]
 
-#include <cassert>
+#include <optional>
 
 #include "core/parallel.h"
 #include "gather/photon_map.h"
-#include "gather/radius_schedule.h"
 #include "gather/search_order.h"
-#include "integrators/density_estimate.h"
+#include "integrators/error_estimate.h"
 #include "integrators/layers.h"
+#include "integrators/progressive.h"
 #include "integrators/registry.h"
 
 namespace photonlab {
 
 namespace {
-
-constexpr double smallest_squared_radius = PhotonMap::minimum_radius * PhotonMap::minimum_radius;
 
 class ProgressivePhotonMapping : public Integrator {
 public:
@@ -29,41 +27,41 @@ public:
         : settings_(settings),
           context_(context),
           order_(context.hit_points.points),
+          rule_(make_radius_rule(radius_rule_settings(settings), context.hit_points.points.size())),
           statistics_(context.hit_points.points.size()) {
-        for (std::size_t i = 0; i < statistics_.size(); ++i) {
-            const double radius = initial_radius(settings, context, i);
-            statistics_[i].squared_radius = radius * radius;
-        }
+        for (std::size_t i = 0; i < statistics_.size(); ++i) statistics_[i].squared_radius = initial_squared_radius(i);
+        if (settings.estimate_error == ErrorEstimation::Off) return;
+        error_.emplace(pixel_count(context.hit_points), statistics_.size());
+        of_pass_.assign(statistics_.size(), 0.0);
     }
 
     void take(const Pass& pass) override {
-        if (passes_ == 0) begin_at(pass.number);
+        if (passes_ == 0) begin_at(pass);
         ++passes_;
-        const std::size_t blocks = block_count(statistics_.size(), hit_points_per_block);
-        std::vector<std::uint64_t> gathered(blocks, 0);
-        parallel_for(blocks, context_.threads, [&](std::size_t block) {
-            const BlockRange range = block_range(block, statistics_.size(), hit_points_per_block);
-            const std::vector<FluxSum> sums =
-                gather_within(*pass.photons, context_.scene, pass.points.points, order_, range, settings_,
-                              [&](std::size_t i) { return std::sqrt(statistics_[i].squared_radius); });
-            for (std::size_t i = range.begin; i < range.end; ++i) {
-                const FluxSum& sum = sums[i - range.begin];
-                update(statistics_[i], sum, pass);
-                gathered[block] += sum.count();
-            }
-        });
-        for (const std::uint64_t count : gathered) photons_gathered_ += count;
+        with_moments(error_ || rule_->wants_curvature(), rule_->wants_sectors(),
+                     [&]<typename Moments>(std::type_identity<Moments>) { gather<Moments>(pass); });
+        if (error_) take_pixels();
     }
 
     MethodLayers image(const PhotonsOfAllPasses*) override {
-        return {.gathered = to_pixels(
-                    context_.hit_points, [&](std::size_t i) { return statistics_[i].estimate; },
-                    context_.scene.total_power)};
+        const HitPointList& points = context_.hit_points.points;
+        const double scale = context_.scene.total_power;
+        MethodLayers layers{.gathered = to_pixels(
+                                context_.hit_points, [&](std::size_t i) { return statistics_[i].estimate; }, scale)};
+        if (error_ && passes_ > 0)
+            layers.estimated_error = error_->of_image(
+                [&](const auto& add) {
+                    for (std::size_t i = 0; i < points.size(); ++i) add(points[i].pixel, i, ColorD(points[i].weight));
+                },
+                settings_.kernel, scale, passes_);
+        return layers;
     }
 
     IntegratorReport report() const override {
         IntegratorReport report{.photons_gathered = photons_gathered_,
-                                .bytes = order_.bytes() + statistics_.size() * sizeof(GatherStatistics)};
+                                .bytes = order_.bytes() + statistics_.size() * sizeof(GatherStatistics) +
+                                         rule_->bytes() + of_pass_.size() * sizeof(double) +
+                                         (error_ ? error_->bytes() : 0)};
         set_radii(
             report, statistics_.size(), [&](std::size_t i) { return std::sqrt(statistics_[i].squared_radius); },
             context_.scene.unit_length);
@@ -85,34 +83,98 @@ public:
         archive.exchange(passes_);
         archive.exchange_as_many(statistics_);
         archive.exchange(photons_gathered_);
+        rule_->exchange(archive);
+        if (error_) error_->exchange(archive);
     }
 
 private:
-    /// Shrinks the radii as the passes before `pass` would have. Only a schedule that depends on the pass alone can.
-    void begin_at(std::uint64_t pass) {
-        assert(pass == 1 || settings_.schedule == ScheduleName::KnausZwicker);
-        double shrink = 1.0;
-        for (std::uint64_t before = 1; before < pass; ++before) shrink *= knaus_zwicker_shrink(settings_.alpha, before);
-        for (GatherStatistics& statistics : statistics_)
-            statistics.squared_radius = std::max(statistics.squared_radius * shrink, smallest_squared_radius);
+    double initial_squared_radius(std::size_t hit_point) const {
+        const double radius = initial_radius(settings_, context_, hit_point);
+        return radius * radius;
+    }
+
+    /// Sets the radii of the first pass that is taken here, which is not always the run's first.
+    void begin_at(const Pass& pass) {
+        if (pass.number > 1) {
+            const double shrink = shrink_before(*rule_, pass.number);
+            for (GatherStatistics& statistics : statistics_)
+                statistics.squared_radius = std::max(statistics.squared_radius * shrink, smallest_squared_radius);
+        }
+        if (!starts_at_nearest(settings_)) return;
+        parallel_for(statistics_.size(), context_.threads, [&](std::size_t i) {
+            statistics_[i].squared_radius =
+                nearest_squared_radius(*pass.photons, pass.points.points[i], settings_, context_);
+        });
+    }
+
+    template <typename Moments>
+    void gather(const Pass& pass) {
+        const std::size_t blocks = block_count(statistics_.size(), hit_points_per_block);
+        std::vector<std::uint64_t> gathered(blocks, 0);
+        parallel_for(blocks, context_.threads, [&](std::size_t block) {
+            const BlockRange range = block_range(block, statistics_.size(), hit_points_per_block);
+            const std::vector<PointGather<Moments>> found =
+                gather_within<Moments>(*pass.photons, context_.scene, pass.points.points, order_, range, settings_,
+                                       [&](std::size_t i) { return reach_of<Moments>(i); });
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                const PointGather<Moments>& at = found[i - range.begin];
+                update(i, at, pass);
+                gathered[block] += at.sum.count();
+            }
+        });
+        for (const std::uint64_t count : gathered) photons_gathered_ += count;
+    }
+
+    template <typename Moments>
+    GatherReach reach_of(std::size_t i) const {
+        GatherReach reach{.radius = std::sqrt(statistics_[i].squared_radius)};
+        if constexpr (Moments::has_curvature)
+            reach.bandwidth =
+                std::sqrt(squared_curvature_bandwidth(settings_.laplacian_radius, initial_squared_radius(i), passes_));
+        return reach;
     }
 
     /// One pass at one hit point.
-    void update(GatherStatistics& statistics, const FluxSum& sum, const Pass& pass) const {
+    template <typename Moments>
+    void update(std::size_t i, const PointGather<Moments>& found, const Pass& pass) {
+        GatherStatistics& statistics = statistics_[i];
         const double area = pi * statistics.squared_radius;
-        take_pass(statistics, settings_.schedule, settings_.alpha,
-                  {.pass = pass.number,
-                   .passes = passes_,
-                   .found = static_cast<double>(sum.count()),
-                   .estimate = sum.flux() / (area * static_cast<double>(pass.paths_emitted))},
-                  smallest_squared_radius);
+        const double paths = static_cast<double>(pass.paths_emitted);
+        PassGather gathered{.pass = pass.number,
+                            .passes = passes_,
+                            .found = static_cast<double>(found.sum.count()),
+                            .estimate = found.sum.flux() / (area * paths)};
+        if constexpr (Moments::are_none) {
+            take_pass(statistics, *rule_, i, gathered, smallest_squared_radius);
+        } else {
+            const MomentsOfPass moments = found.moments.of_pass(found.sum.factor(), paths, 1.0);
+            gathered.initial_squared_radius = initial_squared_radius(i);
+            gathered.curvature = &moments.curvature;
+            gathered.sectors = &moments.sectors;
+            if (error_) {
+                error_->take_region(i, moments.curvature, statistics.squared_radius, passes_);
+                of_pass_[i] = mean_channel(gathered.estimate * ColorD(pass.points.points[i].weight));
+            }
+            take_pass(statistics, *rule_, i, gathered, smallest_squared_radius);
+        }
+    }
+
+    /// What the pass gave to the pixels.
+    void take_pixels() {
+        const HitPointList& points = context_.hit_points.points;
+        std::vector<double> values(pixel_count(context_.hit_points), 0.0);
+        for (std::size_t i = 0; i < points.size(); ++i) values[points[i].pixel] += of_pass_[i];
+        for (std::size_t pixel = 0; pixel < values.size(); ++pixel) error_->take_pixel(pixel, values[pixel], passes_);
     }
 
     const MethodSettings settings_;
     const IntegratorContext context_;
     const SearchOrder order_;
+    const std::unique_ptr<RadiusRule> rule_;
     std::uint64_t passes_ = 0;                  // taken so far, from whichever pass they began at
     std::vector<GatherStatistics> statistics_;  // joined with the hit points by index
+    std::optional<ErrorEstimate> error_;        // where it is asked for
+    std::vector<double> of_pass_;               // what each hit point gave to its pixel in this pass, mean channel
     std::uint64_t photons_gathered_ = 0;
 };
 
@@ -122,14 +184,18 @@ IntegratorKind ppm_kind() {
     return {.name = "ppm",
             .label = "PPM",
             .paper = "Hachisuka, Ogaki and Jensen 2008; Knaus and Zwicker 2011",
-            .needs =
-                [](const MethodSettings& settings) {
-                    return Needs{.photons = Needs::Photons::OfPass,
-                                 .passes = settings.schedule == ScheduleName::KnausZwicker ? Needs::Passes::Independent
-                                                                                           : Needs::Passes::Ordered};
-                },
-            .settings = {"schedule", "alpha", "radius", "footprints", "kernel", "eps", "direct", "direct_samples",
-                         "max_depth", "branch_cutoff", "photons_per_pass"},
+            .needs = progressive_needs,
+            .settings = {"schedule",        "alpha",
+                         "kappa",           "smallest_radius",
+                         "largest_radius",  "laplacian_radius",
+                         "test_variant",    "start",
+                         "test_photons",    "test_shrink",
+                         "test_growth",     "estimate_error",
+                         "radius",          "footprints",
+                         "kernel",          "eps",
+                         "direct",          "direct_samples",
+                         "max_depth",       "branch_cutoff",
+                         "photons_per_pass"},
             .make = make_integrator_of<ProgressivePhotonMapping>};
 }
 

@@ -11,7 +11,7 @@
 
 #include "core/text/names.h"
 #include "gather/kernel.h"
-#include "gather/radius_schedule.h"
+#include "gather/radius_rule.h"
 #include "transport/camera_pass.h"
 
 namespace photonlab {
@@ -38,6 +38,25 @@ constexpr const auto& choice_names(DirectMode) {
     return direct_mode_names;
 }
 
+/// Where the radius of a schedule that tests its disc begins.
+enum class StartRadius {
+    Automatic,  ///< as for the others: `radius` or `footprints`
+    Nearest,    ///< the distance of the photon number `test_photons` of the first pass
+};
+inline constexpr std::array start_radius_names{ChoiceName<StartRadius>{StartRadius::Automatic, "auto"},
+                                               ChoiceName<StartRadius>{StartRadius::Nearest, "knn"}};
+constexpr const auto& choice_names(StartRadius) {
+    return start_radius_names;
+}
+
+/// Whether a method says what the error of its gathered light is (error_estimate.h).
+enum class ErrorEstimation { Off, On };
+inline constexpr std::array error_estimation_names{ChoiceName<ErrorEstimation>{ErrorEstimation::Off, "off"},
+                                                   ChoiceName<ErrorEstimation>{ErrorEstimation::On, "on"}};
+constexpr const auto& choice_names(ErrorEstimation) {
+    return error_estimation_names;
+}
+
 /// Largest radius of mode `nearest` in shares of the scene's bounding radius, unless given: Mitsuba 0.6's default for
 /// its global map.
 inline constexpr double default_max_radius_share = 0.05;
@@ -54,6 +73,18 @@ struct MethodSettings {
     GatherMode mode = GatherMode::Radius;
     ScheduleName schedule = ScheduleName::Hachisuka;
     double alpha = 0.7;
+    double kappa = 6.0;
+    double smallest_radius = 0.125;  ///< of schedule "adaptive", in initial radii
+    double largest_radius = 2.0;     ///< likewise
+    double laplacian_radius = 2.0;   ///< in initial radii
+    TestVariant test_variant = TestVariant::Plain;
+    StartRadius start = StartRadius::Automatic;
+    int test_photons = 10;
+    double test_shrink = 0.8;
+    double test_growth = 1.5625;
+    Positions positions = Positions::Grid;
+    Branches branches = Branches::All;
+    ErrorEstimation estimate_error = ErrorEstimation::Off;
     int k = 120;
     std::optional<double> radius = std::nullopt;  ///< scene units; empty: from `footprints`
     double footprints = 2.0;

@@ -123,6 +123,13 @@ bool in_mode_radius(const MethodSettings& settings) {
     return settings.mode == GatherMode::Radius;
 }
 
+bool is_tested(const MethodSettings& settings) {
+    return settings.schedule == ScheduleName::ChiSquare || settings.schedule == ScheduleName::FTest;
+}
+bool is_adaptive(const MethodSettings& settings) {
+    return settings.schedule == ScheduleName::Adaptive;
+}
+
 constexpr Range at_least(double least) {
     return {.least = least};
 }
@@ -143,11 +150,100 @@ const std::vector<SettingField>& setting_fields() {
                                    .option = "--schedule",
                                    .meaning = "how radii shrink from pass to pass; the same alpha means something else "
                                               "in each"}),
-        line<&Settings::alpha>({.name = "alpha",
-                                .option = "--alpha",
-                                .label = "α",
-                                .meaning = "share of photons kept a pass",
-                                .range = Range{.least = 0.0, .most = 1.0, .has_least = false}}),
+        line<&Settings::alpha>(
+            {.name = "alpha",
+             .option = "--alpha",
+             .label = "α",
+             .meaning = "share of photons kept a pass, of schedules hachisuka and knaus-zwicker",
+             .range = Range{.least = 0.0, .most = 1.0, .has_least = false},
+             .applies = [](const Settings& settings) { return !is_adaptive(settings) && !is_tested(settings); }}),
+        line<&Settings::kappa>({.name = "kappa",
+                                .option = "--kappa",
+                                .label = "κ",
+                                .meaning =
+                                    "of schedule adaptive: r^6 is V1 / (kappa c^2 Laplacian^2 passes); 6 is best "
+                                    "for shrinking radii, 2 for the best fixed one",
+                                .range = above(0.0),
+                                .applies = is_adaptive}),
+        line<&Settings::smallest_radius>({.name = "smallest_radius",
+                                          .option = "--smallest-radius",
+                                          .unit = "initial radii",
+                                          .label = "smallest radius",
+                                          .meaning = "of schedule adaptive, in the first pass; falls as passes^(-1/6)",
+                                          .range = above(0.0),
+                                          .applies = is_adaptive}),
+        line<&Settings::largest_radius>({.name = "largest_radius",
+                                         .option = "--largest-radius",
+                                         .unit = "initial radii",
+                                         .label = "largest radius",
+                                         .meaning = "of schedule adaptive, in the first pass; falls as passes^(-1/6)",
+                                         .range = above(0.0),
+                                         .applies = is_adaptive}),
+        line<&Settings::laplacian_radius>(
+            {.name = "laplacian_radius",
+             .option = "--laplacian-radius",
+             .unit = "initial radii",
+             .label = "Laplacian's radius",
+             .meaning = "of the disc in which the Laplacian of the light is estimated, in the first pass; falls as "
+                        "passes^(-1/10)",
+             .range = above(0.0),
+             .applies =
+                 [](const Settings& settings) {
+                     return is_adaptive(settings) || settings.estimate_error == ErrorEstimation::On;
+                 }}),
+        line<&Settings::test_variant>(
+            {.name = "test_variant",
+             .option = "--test-variant",
+             .meaning =
+                 "what schedule chi-square tests against: a uniform density, the linear one that fits best, or a "
+                 "uniform one with opposite sectors pooled",
+             .applies = [](const Settings& settings) { return settings.schedule == ScheduleName::ChiSquare; }}),
+        line<&Settings::start>({.name = "start",
+                                .option = "--start",
+                                .meaning =
+                                    "initial radius of schedules chi-square and f-test: as of the others, or the "
+                                    "distance of photon number `test_photons` of the first pass",
+                                .applies = is_tested}),
+        line<&Settings::test_photons>(
+            {.name = "test_photons",
+             .option = "--test-photons",
+             .unit = "photons",
+             .label = "photons before a test",
+             .meaning = "that schedule chi-square waits for before its first test; and those of `start` knn",
+             .range = at_least(fewest_nearest),
+             .applies =
+                 [](const Settings& settings) {
+                     return settings.schedule == ScheduleName::ChiSquare ||
+                            (is_tested(settings) && settings.start == StartRadius::Nearest);
+                 }}),
+        line<&Settings::test_shrink>(
+            {.name = "test_shrink",
+             .option = "--test-shrink",
+             .label = "shrink of a test",
+             .meaning = "factor on the squared radius of a disc that is even neither outside nor inside; where it is "
+                        "even inside the factor is 1/2",
+             .range = Range{.least = 0.0, .most = 1.0, .has_least = false},
+             .applies = is_tested}),
+        line<&Settings::test_growth>(
+            {.name = "test_growth",
+             .option = "--test-growth",
+             .label = "growth of a test",
+             .meaning = "factor on the photons that schedule chi-square waits for, whenever its radius shrinks",
+             .range = at_least(1.0),
+             .applies = [](const Settings& settings) { return settings.schedule == ScheduleName::ChiSquare; }}),
+        line<&Settings::positions>({.name = "positions",
+                                    .option = "--positions",
+                                    .meaning =
+                                        "where camera paths begin: at one of the pixel's sample positions in each "
+                                        "pass, every one in turn, or anywhere in the pixel"}),
+        line<&Settings::branches>(
+            {.name = "branches",
+             .option = "--branches",
+             .meaning = "which ways camera paths go on from glass: all of them, or one by chance"}),
+        line<&Settings::estimate_error>({.name = "estimate_error",
+                                         .option = "--estimate-error",
+                                         .meaning = "whether the error of the gathered light is estimated, without a "
+                                                    "reference"}),
         line<&Settings::k>(
             {.name = "k",
              .option = "--k",

@@ -50,7 +50,7 @@ void add(std::vector<ColorD>& sums, const std::vector<Color>& values) {
 
 LoopLayers::LoopLayers(const Scene& scene, const HitPoints& hit_points, const LoopLayerSettings& settings)
     : scene_(scene), grid_(hit_points), settings_(settings) {
-    if (settings_.points == Needs::Points::New) {
+    if (settings_.has_new_points) {
         direct_pixels_.assign(pixel_count(grid_), ColorD(0.0));
         emission_pixels_.assign(pixel_count(grid_), ColorD(0.0));
     } else if (settings_.direct_samples > 0) {
@@ -89,7 +89,7 @@ std::size_t LoopLayers::begin_pass(std::uint64_t pass, const HitPoints& points) 
     begun_ = pass;
     points_ = &points;
     ++passes_;
-    if (settings_.points == Needs::Points::New && settings_.direct_samples > 0)
+    if (settings_.has_new_points && settings_.direct_samples > 0)
         direct_sums_.assign(points.points.size(), ColorD(0.0));
     return blocks(points);
 }
@@ -99,7 +99,7 @@ void LoopLayers::add_block(std::size_t block) {
 }
 
 void LoopLayers::end_pass() {
-    if (settings_.points == Needs::Points::New) {
+    if (settings_.has_new_points) {
         add(emission_pixels_, rounded(emission_image(*points_, settings_.max_depth)));
         if (settings_.direct_samples > 0)
             add(direct_pixels_, to_pixels(
@@ -117,13 +117,13 @@ std::vector<Color> LoopLayers::mean(const std::vector<ColorD>& pixel_sums) const
 }
 
 std::vector<Color> LoopLayers::emission() const {
-    const bool is_summed = settings_.points == Needs::Points::New && passes_ > 0;
+    const bool is_summed = settings_.has_new_points && passes_ > 0;
     return is_summed ? mean(emission_pixels_) : rounded(emission_image(grid_, settings_.max_depth));
 }
 
 std::vector<Color> LoopLayers::direct() const {
     if (settings_.direct_samples == 0) return std::vector<Color>(pixel_count(grid_), Color(0.0f));
-    if (passes_ > 0 && settings_.points == Needs::Points::New) return mean(direct_pixels_);
+    if (passes_ > 0 && settings_.has_new_points) return mean(direct_pixels_);
     if (passes_ > 0)
         return to_pixels(
             grid_, [&](std::size_t i) { return direct_sums_[i]; }, 1.0 / static_cast<double>(passes_));

@@ -15,7 +15,7 @@
 namespace photonlab {
 
 struct LoopLayerSettings {
-    Needs::Points points = Needs::Points::Fixed;
+    bool has_new_points = false;  ///< in every pass
     int direct_samples =
         1;               ///< shadow rays a hit point and pass; 0: direct light is somebody else's, and is black here
     int max_depth = -1;  ///< edges from camera to light, as in Mitsuba

@@ -20,7 +20,7 @@ PhotonSettings photons_of(const RunSettings& settings, RandomPurpose purpose) {
 
 LoopLayerSettings layers_of(const RunSettings& settings, const Needs& needs, RandomPurpose purpose) {
     const bool samples = needs.direct == Needs::Direct::ByLoop && settings.method.direct == DirectMode::Sampled;
-    return {.points = needs.points,
+    return {.has_new_points = needs.new_points.has_value(),
             .direct_samples = samples ? settings.method.direct_samples : 0,
             .max_depth = settings.method.max_depth,
             .seed = settings.seed,
@@ -50,7 +50,9 @@ PassLoop::PassLoop(const Scene& scene, const HitPoints& hit_points, const std::v
       hit_points_(hit_points),
       photon_settings_(photons_of(settings.at(0), purposes.photons)),
       branch_cutoff_(settings[0].method.branch_cutoff),
-      threads_(settings[0].threads) {
+      threads_(settings[0].threads),
+      seed_(settings[0].seed),
+      positions_purpose_(purposes.positions) {
     for (const RunSettings& one : settings) {
         assert(settings.size() == 1 || can_run_together(settings[0], one));
         const IntegratorKind& kind = find_integrator_kind(one.method.integrator, kinds);
@@ -93,7 +95,7 @@ void PassLoop::take(std::uint64_t pass, PhotonPass traced) {
     for (Method& method : methods_)
         if (is_due(method, pass)) take(method, pass);
     photons_.end_pass();
-    new_points_.reset();
+    new_points_.clear();
 }
 
 void PassLoop::trace(std::uint64_t pass, PhotonPass& traced) {
@@ -103,16 +105,25 @@ void PassLoop::trace(std::uint64_t pass, PhotonPass& traced) {
         if (is_due(method, pass)) method.passes_alone += tracing;
 }
 
+/// Makes the new hit points of each kind that is wanted, once.
 void PassLoop::make_points(std::uint64_t pass) {
-    const auto wants = [&](const Method& method) {
-        return is_due(method, pass) && method.needs.points == Needs::Points::New;
-    };
-    if (!std::any_of(methods_.begin(), methods_.end(), wants)) return;
-    const StageTimes making = timed(Stage::Points, [&] {
-        new_points_ = trace_hit_points(scene_, hit_points_.samples_per_pixel, threads_, branch_cutoff_);
-    });
-    for (Method& method : methods_)
-        if (wants(method)) method.passes_alone += making;
+    for (const Method& first : methods_) {
+        if (!first.needs.new_points || !is_due(first, pass) || find_new_points(*first.needs.new_points)) continue;
+        const NewPoints& kind = *first.needs.new_points;
+        const StageTimes making = timed(Stage::Points, [&] {
+            new_points_.emplace_back(kind,
+                                     trace_new_hit_points(scene_, hit_points_.samples_per_pixel, kind,
+                                                          {seed_, positions_purpose_, pass}, threads_, branch_cutoff_));
+        });
+        for (Method& method : methods_)
+            if (is_due(method, pass) && method.needs.new_points == kind) method.passes_alone += making;
+    }
+}
+
+const HitPoints* PassLoop::find_new_points(const NewPoints& kind) const {
+    for (const auto& [made, points] : new_points_)
+        if (made == kind) return &points;
+    return nullptr;
 }
 
 /// Indexes the photons of the pass and samples the direct light of the methods that gather them, which needs no
@@ -202,7 +213,8 @@ Image PassLoop::image(std::size_t index, const StageTimes& indexing) {
             hit_points_.height,
             {{std::string(emission_layer), method.layers.emission()},
              {std::string(direct_layer), std::move(direct)},
-             {std::string(gathered_layer), std::move(own.gathered)}}};
+             {std::string(gathered_layer), std::move(own.gathered)}},
+            std::move(own.estimated_error)};
 }
 
 Image PassLoop::image() {
@@ -256,7 +268,7 @@ bool PassLoop::keeps_all_photons() const {
 }
 
 const HitPoints& PassLoop::points_of(const Method& method) const {
-    return method.needs.points == Needs::Points::New ? *new_points_ : hit_points_;
+    return method.needs.new_points ? *find_new_points(*method.needs.new_points) : hit_points_;
 }
 
 }  // namespace photonlab

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "image/image.h"
@@ -50,6 +51,7 @@ struct LoopPurposes {
     RandomPurpose paths = RandomPurpose::CameraPaths;
     RandomPurpose photons = RandomPurpose::PhotonPaths;
     RandomPurpose direct = RandomPurpose::DirectLight;
+    RandomPurpose positions = RandomPurpose::CameraPositions;
 };
 
 /// True when both trace the same photons in the same passes, gather at the same hit points, and are looked at after the
@@ -112,6 +114,7 @@ private:
     void index_and_light(std::uint64_t pass);
     void light(Method& method, std::uint64_t pass);
     void take(Method& method, std::uint64_t pass);
+    const HitPoints* find_new_points(const NewPoints& kind) const;  // nullptr: not made in this pass
     const HitPoints& points_of(const Method& method) const;
     void describe(const Method& method, RunState& state) const;
     StageTimes begin_images(const std::vector<std::size_t>& which);
@@ -124,7 +127,9 @@ private:
     const int threads_;
     std::vector<Method> methods_;
     PhotonSupply photons_;
-    std::optional<HitPoints> new_points_;  // of the pass, where a method wants them
+    const std::uint64_t seed_;
+    const RandomPurpose positions_purpose_;
+    std::vector<std::pair<NewPoints, HitPoints>> new_points_;  // of the pass: a set for each kind that methods want
 };
 
 }  // namespace photonlab

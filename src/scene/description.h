@@ -24,11 +24,13 @@ struct ShapeDescription {
 
 inline constexpr int largest_image_side = 65536;  ///< pixels, of an image that is rendered
 
-/// A pinhole camera. Camera space is Mitsuba's: z forward, y up, x to the left of the image.
+/// A pinhole camera, or one with a thin lens. Camera space is Mitsuba's: z forward, y up, x to the left of the image.
 struct CameraDescription {
-    Matrix to_world;      ///< camera space to world, no shear; Imath's row-vector convention
-    double fov_x = 45.0;  ///< full horizontal field of view, degrees, in (0, 180)
-    int width = 768;      ///< pixels; changing the resolution keeps fov_x as given here
+    Matrix to_world;               ///< camera space to world, no shear; Imath's row-vector convention
+    double fov_x = 45.0;           ///< full horizontal field of view, degrees, in (0, 180)
+    double aperture_radius = 0.0;  ///< of the lens; 0: a pinhole
+    double focus_distance = 1.0;   ///< from the camera along its view to the plane that is sharp
+    int width = 768;               ///< pixels; changing the resolution keeps fov_x as given here
     int height = 576;
     std::string place;  ///< "file:line" for messages, or ""
 };

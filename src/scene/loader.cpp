@@ -300,7 +300,8 @@ private:
     }
 
     void read_sensor(const XmlElement& element) {
-        if (element.require("type") != "perspective") fail_unknown(element, "perspective");
+        const std::string& type = element.require("type");
+        if (type != "perspective" && type != "thinlens") fail_unknown(element, "perspective, thinlens");
         Properties properties(element);
         scene_.camera.place = properties.place_of("to_world");
         scene_.camera.to_world = properties.transform("to_world").value_or(Matrix());
@@ -323,9 +324,27 @@ private:
                                  fmt::format("{}: expected 0, a shifted image plane is not known here", name));
         near_clip_ = properties.number("near_clip").value_or(near_clip_);
         far_clip_ = properties.number("far_clip").value_or(far_clip_);
-        for (const char* unused : {"focus_distance", "shutter_open", "shutter_close"})
-            if (properties.number(unused)) note(fmt::format("sensor \"perspective\": not read: {}", unused));
+        const auto focus_distance = properties.number("focus_distance");
+        if (type == "thinlens") read_lens(properties, focus_distance);
+        if (type == "perspective" && focus_distance) note("sensor \"perspective\": not read: focus_distance");
+        for (const char* unused : {"shutter_open", "shutter_close"})
+            if (properties.number(unused)) note(fmt::format("sensor \"{}\": not read: {}", type, unused));
         properties.require_all_known();
+    }
+
+    /// Both lengths in scene units; a scale of to_world does not change them, as in Mitsuba.
+    void read_lens(const Properties& properties, std::optional<double> focus_distance) {
+        const auto aperture_radius = properties.number("aperture_radius");
+        const auto require = [&](const char* name, const std::optional<double>& length) {
+            if (!length || !(*length > 0.0))
+                throw InputError(length ? properties.place_of(name) : scene_.camera.place,
+                                 fmt::format("sensor \"thinlens\": {}: expected a length above 0{}", name,
+                                             length ? fmt::format(", got {}", *length) : ""));
+        };
+        require("aperture_radius", aperture_radius);
+        require("focus_distance", focus_distance);
+        scene_.camera.aperture_radius = *aperture_radius;
+        scene_.camera.focus_distance = *focus_distance;
     }
 
     /// Mitsuba shows nothing that is nearer to the camera than near_clip or farther than far_clip, along its view.

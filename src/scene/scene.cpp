@@ -117,6 +117,14 @@ Camera make_camera(const CameraDescription& description, std::optional<Resolutio
         fail(description.place,
              fmt::format("camera: expected a position nearer to the scene, which is {} scene units large, got {} {} {}",
                          to_unit_box.unit_length, position.x, position.y, position.z));
+    const auto require_length = [&](double length, double least, const char* name) {
+        if (!(length >= least && to_unit_box.length(length) <= largest_length))
+            fail(description.place, fmt::format("camera: {}: expected a length above 0, got {}", name, length));
+    };
+    if (description.aperture_radius != 0.0) {
+        require_length(description.aperture_radius, 0.0, "aperture_radius");
+        require_length(description.focus_distance, std::numeric_limits<double>::min(), "focus_distance");
+    }
     const double image_width = 2.0 * std::tan(description.fov_x * pi / 360.0);  // at distance 1
     const double image_height = image_width * height / width;                   // square pixels
     return {.position = to_unit_box(position),
@@ -125,7 +133,9 @@ Camera make_camera(const CameraDescription& description, std::optional<Resolutio
             .down = -up * image_height,
             .width = width,
             .height = height,
-            .pixel_angle = image_width / width};
+            .pixel_angle = image_width / width,
+            .aperture_radius = description.aperture_radius / to_unit_box.unit_length,
+            .focus_distance = description.focus_distance / to_unit_box.unit_length};
 }
 
 /// Lists the lights that have power, and with which probability each is chosen. Ratios of power, not power, so that
@@ -171,8 +181,14 @@ bool has_specular_surfaces(const Scene& scene) {
                        [&](const Shape& shape) { return is_specular(scene.materials[shape.material].bsdf); });
 }
 
-Vector Camera::direction(double x, double y) const {
-    return Vector((forward + right * (x / width - 0.5) + down * (y / height - 0.5)).normalized());
+Ray Camera::ray(double x, double y, const Imath::V2f& on_lens) const {
+    const VectorD through = forward + right * (x / width - 0.5) + down * (y / height - 0.5);
+    if (!has_lens()) return {position, Vector(through.normalized())};
+    const double radius = aperture_radius * std::sqrt(static_cast<double>(on_lens.x));
+    const double angle = 2.0 * pi * static_cast<double>(on_lens.y);
+    const VectorD offset =
+        right.normalized() * (radius * std::cos(angle)) + down.normalized() * (radius * std::sin(angle));
+    return {Vector(VectorD(position) + offset), Vector((through * focus_distance - offset).normalized())};
 }
 
 Scene build_scene(const SceneDescription& description, std::optional<Resolution> resolution) {

@@ -18,8 +18,9 @@
 
 namespace photonlab {
 
-/// Pinhole camera: the ray through (x, y) in pixels, y down, leaves `position` in direction
-/// forward + right * (x/width - 1/2) + down * (y/height - 1/2), to be normalised.
+/// Pinhole or thin lens. The ray through (x, y) in pixels, y down, leaves `position` in direction
+/// forward + right * (x/width - 1/2) + down * (y/height - 1/2), to be normalised; with a lens it leaves a point of it,
+/// and meets that ray in the plane at `focus_distance`.
 struct Camera {
     Vector position;
     VectorD forward;  ///< unit length
@@ -28,8 +29,13 @@ struct Camera {
     int width;
     int height;
     double pixel_angle;  ///< angle that a central pixel is wide, radians; of small angles: its width at distance 1
+    double aperture_radius = 0.0;  ///< of the lens, unit box; 0: a pinhole
+    double focus_distance = 1.0;   ///< along `forward`, unit box
 
-    Vector direction(double x, double y) const;  ///< unit
+    bool has_lens() const { return aperture_radius > 0.0; }
+
+    /// Its direction is unit. `on_lens` in [0, 1)^2 is uniform over the lens; a pinhole does not look at it.
+    Ray ray(double x, double y, const Imath::V2f& on_lens) const;
 };
 
 struct EmbreeScene;  // owns the device and the scene of Embree

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "core/error.h"
@@ -62,14 +63,112 @@ struct Branch {
     std::uint32_t edges;
 };
 
-/// Follows the sample positions of a tile into the scene.
+/// Where a camera path begins.
+struct CameraSample {
+    double x, y;  ///< pixels, from the upper left corner of the image
+    Imath::V2f on_lens = Imath::V2f(0.0f);
+};
+
+/// The same samples in every pass: the grid of each pixel, with a lens point for each cell. Those are the points of the
+/// additive recurrence of the plastic number, moved by random numbers of the pixel, so that neighbours differ.
+/// [Roberts 2018, "The unreasonable effectiveness of quasirandom sequences"]
+class GridSamples {
+public:
+    GridSamples(const Camera& camera, int samples_per_pixel) : camera_(camera), grid_(grid_size(samples_per_pixel)) {}
+
+    double share() const { return 1.0 / (grid_ * grid_); }
+
+    /// Calls `take(sample, nullptr)`: these paths draw no numbers.
+    template <typename Take>
+    void of_pixel(std::uint32_t pixel, const Take& take) const {
+        const int x = static_cast<int>(pixel) % camera_.width;
+        const int y = static_cast<int>(pixel) / camera_.width;
+        Imath::V2f moved(0.0f);
+        if (camera_.has_lens()) moved = RandomStream(0, RandomPurpose::CameraPositions, 0, pixel).next_2d();
+        for (int cell = 0; cell < grid_ * grid_; ++cell)
+            take(CameraSample{x + (cell % grid_ + 0.5) / grid_, y + (cell / grid_ + 0.5) / grid_, lens(moved, cell)},
+                 static_cast<RandomStream*>(nullptr));
+    }
+
+private:
+    static Imath::V2f lens(const Imath::V2f& moved, int cell) {
+        const auto fraction = [](double value) { return static_cast<float>(value - std::floor(value)); };
+        return {fraction(static_cast<double>(moved.x) + 0.7548776662466927 * cell),
+                fraction(static_cast<double>(moved.y) + 0.5698402909980532 * cell)};
+    }
+
+    const Camera& camera_;
+    const int grid_;  // columns, and rows, of samples in a pixel
+};
+
+/// Samples of one pass (trace_new_hit_points()).
+class NewSamples {
+public:
+    NewSamples(const Camera& camera, int samples_per_pixel, const NewPoints& points, const PassOfStream& pass)
+        : camera_(camera),
+          positions_(points.positions),
+          positions_grid_(grid_size(samples_per_pixel)),
+          paths_grid_(grid_size(points.paths_per_pixel)),
+          pass_(pass) {}
+
+    double share() const { return positions_ == Positions::Grid ? 1.0 : 1.0 / (paths_grid_ * paths_grid_); }
+
+    /// Calls `take(sample, &stream)` with the stream that the rest of the path draws from.
+    template <typename Take>
+    void of_pixel(std::uint32_t pixel, const Take& take) const {
+        const int x = static_cast<int>(pixel) % camera_.width;
+        const int y = static_cast<int>(pixel) / camera_.width;
+        RandomStream random(pass_.seed, pass_.purpose, pass_.pass, pixel);
+        if (positions_ == Positions::Grid) {
+            const int cell = cell_of(pixel);
+            CameraSample sample{x + (cell % positions_grid_ + 0.5) / positions_grid_,
+                                y + (cell / positions_grid_ + 0.5) / positions_grid_};
+            if (camera_.has_lens()) sample.on_lens = random.next_2d();
+            take(sample, &random);
+            return;
+        }
+        for (int cell = 0; cell < paths_grid_ * paths_grid_; ++cell) {
+            const Imath::V2f within = random.next_2d();
+            CameraSample sample{x + (cell % paths_grid_ + static_cast<double>(within.x)) / paths_grid_,
+                                y + (cell / paths_grid_ + static_cast<double>(within.y)) / paths_grid_};
+            if (camera_.has_lens()) sample.on_lens = random.next_2d();
+            take(sample, &random);
+        }
+    }
+
+private:
+    /// The position whose turn it is: in each cycle of as many passes as there are positions every one comes once, in
+    /// the order (first + stride * place) modulo their number, with a random first and a random stride without a
+    /// common divisor.
+    int cell_of(std::uint32_t pixel) const {
+        const auto count = static_cast<std::uint64_t>(positions_grid_ * positions_grid_);
+        const std::uint64_t cycle = (pass_.pass - 1) / count;
+        RandomStream random(pass_.seed, pass_.purpose, cycle, std::uint64_t{1} << 40 | pixel);
+        const std::uint64_t first = random.next_bits() % count;
+        std::uint64_t stride = 1;
+        do stride = 1 + random.next_bits() % count;
+        while (std::gcd(stride, count) != 1);
+        return static_cast<int>((first + stride * ((pass_.pass - 1) % count)) % count);
+    }
+
+    const Camera& camera_;
+    const Positions positions_;
+    const int positions_grid_;  // columns, and rows, of the sample positions of a pixel
+    const int paths_grid_;      // and of the cells in each of which a path begins
+    const PassOfStream pass_;
+};
+
+/// Follows the samples of a tile into the scene.
+template <typename Samples>
 class TileTracer {
 public:
-    TileTracer(const Scene& scene, const Camera& camera, int samples_per_pixel, double branch_cutoff)
+    TileTracer(const Scene& scene, const Camera& camera, const Samples& samples, Branches branches,
+               double branch_cutoff)
         : scene_(scene),
           camera_(camera),
-          grid_(grid_size(samples_per_pixel)),
-          share_(1.0f / static_cast<float>(samples_per_pixel)),
+          samples_(samples),
+          branches_(branches),
+          share_(static_cast<float>(samples.share())),
           smallest_weight_(static_cast<float>(branch_cutoff)),
           tiles_across_((camera.width + tile_size - 1) / tile_size),
           tiles_down_((camera.height + tile_size - 1) / tile_size) {}
@@ -88,25 +187,26 @@ public:
             if (x >= camera_.width || y >= camera_.height) continue;
             const auto pixel = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(camera_.width) +
                                static_cast<std::uint32_t>(x);
-            for (int row = 0; row < grid_; ++row)
-                for (int column = 0; column < grid_; ++column)
-                    trace_sample(pixel, x + (column + 0.5) / grid_, y + (row + 0.5) / grid_, tile);
+            samples_.of_pixel(pixel, [&](const CameraSample& sample, RandomStream* random) {
+                trace_sample(sample, pixel, random, tile);
+            });
         }
     }
 
 private:
-    /// `x` and `y` in pixels, from the upper left corner of the image.
-    void trace_sample(std::uint32_t pixel, double x, double y, Tile& tile) const {
-        std::vector<Branch> pending{{{camera_.position, camera_.direction(x, y)}, Color(1.0f), 0.0f, 1}};
+    /// `random` is there where branches are chosen.
+    void trace_sample(const CameraSample& sample, std::uint32_t pixel, RandomStream* random, Tile& tile) const {
+        std::vector<Branch> pending{{camera_.ray(sample.x, sample.y, sample.on_lens), Color(1.0f), 0.0f, 1}};
         while (!pending.empty()) {
             const Branch branch = pending.back();
             pending.pop_back();
-            trace_branch(branch, pixel, pending, tile);
+            trace_branch(branch, pixel, random, pending, tile);
         }
     }
 
     /// To the next surface: leaves a hit point there, or adds what goes on from it to `pending`.
-    void trace_branch(const Branch& branch, std::uint32_t pixel, std::vector<Branch>& pending, Tile& tile) const {
+    void trace_branch(const Branch& branch, std::uint32_t pixel, RandomStream* random, std::vector<Branch>& pending,
+                      Tile& tile) const {
         const std::optional<Hit> hit = intersect(scene_, branch.ray);
         if (!hit) return;
         const Vector outgoing = -branch.ray.direction;
@@ -121,7 +221,7 @@ private:
             ++tile.nonfinite;
             return;
         }
-        if (is_specular(surface->bsdf)) branch_on(branch, *surface, distance, pending, tile);
+        if (is_specular(surface->bsdf)) branch_on(branch, *surface, distance, random, pending, tile);
         if (!is_scattering(surface->bsdf)) return;
         tile.points.push_back({.position = surface->position,
                                .normal = surface->frame.normal,
@@ -138,10 +238,11 @@ private:
 
     /// Adds what a mirror or glass makes of the branch to `pending`, but for what carries too little. `distance` is
     /// that of the surface.
-    void branch_on(const Branch& branch, const Surface& surface, float distance, std::vector<Branch>& pending,
-                   Tile& tile) const {
+    void branch_on(const Branch& branch, const Surface& surface, float distance, RandomStream* random,
+                   std::vector<Branch>& pending, Tile& tile) const {
         const Vector outgoing = surface.frame.to_local(-branch.ray.direction);
-        const SpecularBranches onward = specular_branches(surface.bsdf, outgoing, Carried::Radiance);
+        SpecularBranches onward = specular_branches(surface.bsdf, outgoing, Carried::Radiance);
+        if (branches_ == Branches::One && onward.count > 1) onward = one_of(onward, random->next());
         for (const SpecularBranch& way : onward) {
             const Vector direction = surface.frame.to_world(way.incoming);
             if (!sides_agree(surface, direction)) continue;  // absorbed, as for every path here
@@ -155,38 +256,51 @@ private:
         }
     }
 
+    /// One of the ways, with the probability of its weight, by which it is divided.
+    static SpecularBranches one_of(const SpecularBranches& ways, float draw) {
+        double all = 0.0;
+        for (const SpecularBranch& way : ways) all += mean_channel(ColorD(way.weight));
+        if (!(all > 0.0)) return {};
+        double below = static_cast<double>(draw) * all;
+        const SpecularBranch* chosen = ways.begin();
+        for (; chosen + 1 != ways.end(); ++chosen) {
+            const double weight = mean_channel(ColorD(chosen->weight));
+            if (below < weight) break;
+            below -= weight;
+        }
+        const double probability = mean_channel(ColorD(chosen->weight)) / all;
+        SpecularBranches one;
+        if (probability > 0.0) one.add(chosen->incoming, chosen->weight * static_cast<float>(1.0 / probability));
+        return one;
+    }
+
     const Scene& scene_;
     const Camera& camera_;
-    const int grid_;     // columns, and rows, of samples in a pixel
+    const Samples& samples_;
+    const Branches branches_;
     const float share_;  // of a sample in its pixel
     const float smallest_weight_;
     const int tiles_across_;
     const int tiles_down_;
 };
 
-}  // namespace
-
-HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int threads, double branch_cutoff) {
-    return trace_hit_points(scene, scene.camera, samples_per_pixel, threads, branch_cutoff);
-}
-
-HitPoints trace_hit_points(const Scene& scene, const Camera& camera, int samples_per_pixel, int threads,
-                           double branch_cutoff) {
+template <typename Samples>
+HitPoints trace_samples(const Scene& scene, const Camera& camera, const Samples& samples, Branches branches,
+                        int threads, double branch_cutoff) {
     constexpr std::size_t material_limit = std::size_t{1} << 16;  // HitPoint::material
     if (scene.materials.size() > material_limit)
         throw InputError("expected at most " + std::to_string(material_limit) + " materials in a scene, got " +
                          std::to_string(scene.materials.size()));
-    const TileTracer tracer(scene, camera, samples_per_pixel, branch_cutoff);
+    const TileTracer tracer(scene, camera, samples, branches, branch_cutoff);
 
     HitPoints result;
     result.width = camera.width;
     result.height = camera.height;
-    result.samples_per_pixel = samples_per_pixel;
     result.points = tracer.empty_list();
     // Untouched memory costs nothing, and growing costs a copy.
-    const std::size_t samples = pixel_count(result) * static_cast<std::size_t>(samples_per_pixel);
-    result.points.reserve(samples);
-    result.footprints.reserve(samples);
+    const auto count = static_cast<std::size_t>(static_cast<double>(pixel_count(result)) / samples.share() + 0.5);
+    result.points.reserve(count);
+    result.footprints.reserve(count);
 
     std::vector<Tile> round(std::min(tracer.tiles(), tiles_per_round));
     for (Tile& tile : round) tile.points = tracer.empty_list();
@@ -196,6 +310,28 @@ HitPoints trace_hit_points(const Scene& scene, const Camera& camera, int samples
         for (std::size_t slot = 0; slot < in_round; ++slot) move_to_end(result, round[slot]);
     }
     result.weight_cut /= static_cast<double>(pixel_count(result));
+    return result;
+}
+
+}  // namespace
+
+HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int threads, double branch_cutoff) {
+    return trace_hit_points(scene, scene.camera, samples_per_pixel, threads, branch_cutoff);
+}
+
+HitPoints trace_hit_points(const Scene& scene, const Camera& camera, int samples_per_pixel, int threads,
+                           double branch_cutoff) {
+    const GridSamples samples(camera, samples_per_pixel);
+    HitPoints result = trace_samples(scene, camera, samples, Branches::All, threads, branch_cutoff);
+    result.samples_per_pixel = samples_per_pixel;
+    return result;
+}
+
+HitPoints trace_new_hit_points(const Scene& scene, int samples_per_pixel, const NewPoints& points,
+                               const PassOfStream& pass, int threads, double branch_cutoff) {
+    const NewSamples samples(scene.camera, samples_per_pixel, points, pass);
+    HitPoints result = trace_samples(scene, scene.camera, samples, points.branches, threads, branch_cutoff);
+    result.samples_per_pixel = samples_per_pixel;
     return result;
 }
 

@@ -9,10 +9,13 @@
 
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "core/math.h"
+#include "core/random.h"
+#include "core/text/names.h"
 #include "scene/scene.h"
 #include "transport/hit_point_list.h"
 
@@ -39,10 +42,48 @@ struct HitPoints {
     std::uint64_t nonfinite = 0;         ///< camera paths that met a non-finite value
 };
 
+/// Where camera paths begin.
+enum class Positions {
+    Grid,  ///< at the sample positions of each pixel
+    Box,   ///< uniform in the pixel
+};
+inline constexpr std::array positions_names{ChoiceName<Positions>{Positions::Grid, "grid"},
+                                            ChoiceName<Positions>{Positions::Box, "box"}};
+constexpr const auto& choice_names(Positions) {
+    return positions_names;
+}
+
+/// How they go on from glass.
+enum class Branches {
+    All,  ///< every way, with its weight
+    One,  ///< one of them, with the probability of its weight, which it then keeps
+};
+inline constexpr std::array branches_names{ChoiceName<Branches>{Branches::All, "all"},
+                                           ChoiceName<Branches>{Branches::One, "one"}};
+constexpr const auto& choice_names(Branches) {
+    return branches_names;
+}
+
+/// Camera paths of one pass of a method whose hit points are new in every pass.
+struct NewPoints {
+    Positions positions = Positions::Grid;
+    Branches branches = Branches::All;
+    int paths_per_pixel = 1;  ///< in a pass; a perfect square
+    bool operator==(const NewPoints&) const = default;
+};
+
+/// What the random numbers of a pass's camera paths are made from.
+struct PassOfStream {
+    std::uint64_t seed = 1;
+    RandomPurpose purpose = RandomPurpose::CameraPositions;
+    std::uint64_t pass = 1;
+};
+
 /// Where camera branches end unless a method says otherwise, and always those of a reference.
 inline constexpr double default_branch_cutoff = 1e-4;
 
 /// Traces the deterministic grid of sample positions: `samples_per_pixel` is a perfect square, 1 is the pixel's centre.
+/// A lens has one point for each position, spread over it and always the same: its blur is that of so many points.
 /// Specular branches whose throughput (strongest channel) is below `branch_cutoff`, above 0, end, and so do those of
 /// 10,000 edges.
 HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int threads,
@@ -51,6 +92,12 @@ HitPoints trace_hit_points(const Scene& scene, int samples_per_pixel, int thread
 /// The same through another camera than the scene's: of fewer pixels, to know what is coming.
 HitPoints trace_hit_points(const Scene& scene, const Camera& camera, int samples_per_pixel, int threads,
                            double branch_cutoff);
+
+/// The camera paths of one pass, other ones in every pass. With positions "grid" a path a pixel begins at one of its
+/// `samples_per_pixel` positions, each of them once in as many passes; with "box" `paths_per_pixel` begin anywhere in
+/// it, one in each cell of a grid. Each has the same share of its pixel.
+HitPoints trace_new_hit_points(const Scene& scene, int samples_per_pixel, const NewPoints& points,
+                               const PassOfStream& pass, int threads, double branch_cutoff = default_branch_cutoff);
 
 /// Throws InputError unless `samples_per_pixel` is the square of a whole number, at most 1024^2.
 void require_perfect_square(std::int64_t samples_per_pixel);

@@ -12,7 +12,7 @@
 
 namespace photonlab {
 
-/// A point to gather at. Const once made; what changes from pass to pass is in GatherStatistics.
+/// A point to gather at. Const once made; what changes from pass to pass is in the statistics of a method.
 struct HitPoint {
     Vector position;
     Vector normal;               ///< shading normal, unit, facing `outgoing`

@@ -161,9 +161,10 @@ TEST(GatherExtremes, ARadiusWhoseSquareUnderflowsFindsWhatIsInThePoint) {
     }
     // An update that would shrink below keeps to the floor.
     constexpr double floor = PhotonMap::minimum_radius * PhotonMap::minimum_radius;
+    const auto rule = make_radius_rule({.alpha = 1e-6}, 1);
     GatherStatistics statistics{.squared_radius = 1e-30};
     for (std::uint64_t pass = 1; pass <= 1000; ++pass)
-        take_pass(statistics, ScheduleName::Hachisuka, 1e-6, {.pass = pass, .passes = pass, .found = 1e9}, floor);
+        take_pass(statistics, *rule, 0, {.pass = pass, .passes = pass, .found = 1e9}, floor);
     EXPECT_EQ(statistics.squared_radius, floor);
 }
 

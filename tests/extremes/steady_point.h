@@ -19,7 +19,7 @@
 #include <cstdint>
 
 #include "core/math.h"
-#include "gather/radius_schedule.h"
+#include "gather/radius_rule.h"
 
 namespace photonlab::test {
 
@@ -51,13 +51,14 @@ inline PointState closed_form(const SteadyPoint& point, std::uint64_t passes) {
 /// The program's own update.
 class ProgramUpdate {
 public:
-    explicit ProgramUpdate(const SteadyPoint& point) : point_(point) {
+    explicit ProgramUpdate(const SteadyPoint& point)
+        : point_(point), rule_(make_radius_rule({.alpha = point.alpha}, 1)) {
         statistics_.squared_radius = point.initial_radius * point.initial_radius;
     }
     void take_pass() {
         ++passes_;
         const double share = statistics_.squared_radius / (point_.initial_radius * point_.initial_radius);
-        photonlab::take_pass(statistics_, ScheduleName::Hachisuka, point_.alpha,
+        photonlab::take_pass(statistics_, *rule_, 0,
                              {.pass = passes_,
                               .passes = passes_,
                               .found = point_.photons_at_first * share,
@@ -70,6 +71,7 @@ public:
 
 private:
     const SteadyPoint point_;
+    const std::unique_ptr<RadiusRule> rule_;
     GatherStatistics statistics_;
     std::uint64_t passes_ = 0;
 };

@@ -64,14 +64,14 @@ void write_by_alpha() {
 /// 1), so it is 1 / (n + 1) of its first value and the count is n / 2.
 void write_by_photons() {
     constexpr double alpha = 0.5;
+    const auto rule = make_radius_rule({.alpha = alpha}, 1);
     GatherStatistics statistics{.squared_radius = 1.0};
     float squared_radius = 1.0f;
     float count = 0.0f;
     float estimate = 0.0f;
     std::uint64_t next = 1;
     for (std::uint64_t pass = 1; pass <= std::uint64_t{1} << 27; ++pass) {
-        take_pass(statistics, ScheduleName::Hachisuka, alpha,
-                  {.pass = pass, .passes = pass, .found = 1.0, .estimate = ColorD(7.0)}, 0.0);
+        take_pass(statistics, *rule, 0, {.pass = pass, .passes = pass, .found = 1.0, .estimate = ColorD(7.0)}, 0.0);
         squared_radius *= (count + static_cast<float>(alpha)) / (count + 1.0f);
         count += static_cast<float>(alpha);
         estimate += (7.0f - estimate) / static_cast<float>(pass);

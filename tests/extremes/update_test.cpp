@@ -45,9 +45,10 @@ TEST(Update, OfAMillionPassesHasItsClosedFormForEveryAlpha) {
 // million passes: 10^9.
 TEST(Update, OfABillionPhotonsHasItsClosedForm) {
     for (const double alpha : {0.1, 0.5, 2.0 / 3.0, 0.7, 1.0 - 1e-9, 1.0}) {
+        const auto rule = make_radius_rule({.alpha = alpha}, 1);
         GatherStatistics statistics{.squared_radius = 0.01};
         for (std::uint64_t pass = 1; pass <= million; ++pass)
-            take_pass(statistics, ScheduleName::Hachisuka, alpha,
+            take_pass(statistics, *rule, 0,
                       {.pass = pass, .passes = pass, .found = 1000.0, .estimate = ColorD(static_cast<double>(pass))},
                       0.0);
         const long double n = million;
@@ -61,8 +62,9 @@ TEST(Update, OfABillionPhotonsHasItsClosedForm) {
 
 // Photons by the million in one pass or one by one a million times later: the count moves by each.
 TEST(Update, CountsOnePhotonBesideABillion) {
+    const auto rule = make_radius_rule({.alpha = 0.5}, 1);
     GatherStatistics statistics{.squared_radius = 1.0, .count = 1e9};
-    for (int pass = 1; pass <= 1000; ++pass) take_pass(statistics, ScheduleName::Hachisuka, 0.5, {.found = 1.0}, 0.0);
+    for (int pass = 1; pass <= 1000; ++pass) take_pass(statistics, *rule, 0, {.found = 1.0}, 0.0);
     EXPECT_EQ(statistics.count, 1e9 + 500.0);
     // Each photon takes half of its share of the disc: 1 - 0.5 / (N + 1).
     EXPECT_NEAR(1.0 - statistics.squared_radius, 500.0 / 1e9, 1e-12);
@@ -72,10 +74,11 @@ TEST(Update, CountsOnePhotonBesideABillion) {
 // anything, the estimate is a thousandth of that pass's.
 TEST(Update, PassesWithoutPhotonsCountInTheMeanAlone) {
     for (const double alpha : alphas) {
+        const auto rule = make_radius_rule({.alpha = alpha}, 1);
         GatherStatistics statistics{.squared_radius = 0.25};
         for (std::uint64_t pass = 1; pass <= 100'000; ++pass) {
             const bool lucky = pass % 1000 == 0;
-            take_pass(statistics, ScheduleName::Hachisuka, alpha,
+            take_pass(statistics, *rule, 0,
                       {.pass = pass, .passes = pass, .found = lucky ? 1.0 : 0.0, .estimate = ColorD(lucky ? 7.0 : 0.0)},
                       0.0);
             if (pass == 999) {
@@ -90,9 +93,10 @@ TEST(Update, PassesWithoutPhotonsCountInTheMeanAlone) {
 
 TEST(Update, WithAlphaOneNeverShrinks) {
     for (const ScheduleName schedule : {ScheduleName::Hachisuka, ScheduleName::KnausZwicker}) {
+        const auto rule = make_radius_rule({.schedule = schedule, .alpha = 1.0}, 1);
         GatherStatistics statistics{.squared_radius = 0.1};
         for (std::uint64_t pass = 1; pass <= million; ++pass)
-            take_pass(statistics, schedule, 1.0, {.pass = pass, .passes = pass, .found = 3.0}, 0.0);
+            take_pass(statistics, *rule, 0, {.pass = pass, .passes = pass, .found = 3.0}, 0.0);
         EXPECT_EQ(statistics.squared_radius, 0.1);
         EXPECT_EQ(statistics.count, 3e6);
     }
@@ -147,11 +151,12 @@ TEST(FloatStatistics, StopCountingWhereDoubleGoesOn) {
     constexpr float alpha = 0.7f;
     float count = 0.0f;
     float squared_radius = 1.0f;
+    const auto rule = make_radius_rule({.alpha = 0.7}, 1);
     GatherStatistics in_double{.squared_radius = 1.0};
     for (std::uint64_t pass = 1; pass <= photons; ++pass) {
         squared_radius *= (count + alpha) / (count + 1.0f);
         count += alpha;
-        take_pass(in_double, ScheduleName::Hachisuka, 0.7, {.pass = pass, .passes = pass, .found = 1.0}, 0.0);
+        take_pass(in_double, *rule, 0, {.pass = pass, .passes = pass, .found = 1.0}, 0.0);
     }
     EXPECT_NEAR(in_double.count, 0.7 * photons, 1e-9 * photons);
     EXPECT_EQ(count, 0x1p24f);                                   // 20% of the photons are lost

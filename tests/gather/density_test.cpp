@@ -15,7 +15,7 @@
 #include "core/sampling.h"
 #include "gather/kernel.h"
 #include "gather/photon_map.h"
-#include "gather/radius_schedule.h"
+#include "gather/radius_rule.h"
 
 namespace photonlab {
 namespace {

@@ -38,10 +38,13 @@ private:
     bool is_given_the_grid_ = false;
 };
 
-template <Needs::Points points>
+template <bool are_new>
 IntegratorKind point_count() {
     return {.name = "point-count",
-            .needs = [](const MethodSettings&) { return Needs{.points = points}; },
+            .needs =
+                [](const MethodSettings&) {
+                    return Needs{.new_points = are_new ? std::optional(NewPoints{}) : std::nullopt};
+                },
             .settings = {"direct", "direct_samples", "max_depth", "branch_cutoff"},
             .make = make_integrator_of<PointCount>};
 }
@@ -59,8 +62,8 @@ protected:
 };
 
 TEST_F(Loop, MakesNewHitPointsForAMethodThatWantsThemAndChargesThem) {
-    PassLoop fixed = loop(point_count<Needs::Points::Fixed>());
-    PassLoop anew = loop(point_count<Needs::Points::New>());
+    PassLoop fixed = loop(point_count<false>());
+    PassLoop anew = loop(point_count<true>());
     for (std::uint64_t pass = 1; pass <= 3; ++pass) {
         fixed.take(pass);
         anew.take(pass);
@@ -75,8 +78,8 @@ TEST_F(Loop, MakesNewHitPointsForAMethodThatWantsThemAndChargesThem) {
 // Today's new points are those of the grid, so that what is summed in pixels must be what is summed at points, to the
 // rounding of one pass to float.
 TEST_F(Loop, SumsEmissionAndDirectLightInPixelsWherePointsAreNew) {
-    PassLoop fixed = loop(point_count<Needs::Points::Fixed>());
-    PassLoop anew = loop(point_count<Needs::Points::New>());
+    PassLoop fixed = loop(point_count<false>());
+    PassLoop anew = loop(point_count<true>());
     for (const std::uint64_t passes : {0, 1, 4}) {
         for (std::uint64_t pass = fixed.state(0).pass + 1; pass <= passes; ++pass) {
             fixed.take(pass);

@@ -459,9 +459,9 @@ TEST(Camera, SeesItsTargetInTheMiddleAndItsXToTheLeft) {
     description.camera.to_world = Matrix();  // at the origin, z forward, x to the left
     description.camera.fov_x = 90.0;
     const Scene scene = build_scene(description, Resolution{200, 100});
-    EXPECT_LT((scene.camera.direction(100, 50) - Vector(0, 0, 1)).length(), 1e-6f);
-    EXPECT_LT((scene.camera.direction(0, 50) - Vector(1, 0, 1).normalized()).length(), 1e-6f);
-    EXPECT_LT((scene.camera.direction(100, 0) - Vector(0, 0.5f, 1).normalized()).length(), 1e-6f);
+    EXPECT_LT((scene.camera.ray(100, 50, Imath::V2f(0.0f)).direction - Vector(0, 0, 1)).length(), 1e-6f);
+    EXPECT_LT((scene.camera.ray(0, 50, Imath::V2f(0.0f)).direction - Vector(1, 0, 1).normalized()).length(), 1e-6f);
+    EXPECT_LT((scene.camera.ray(100, 0, Imath::V2f(0.0f)).direction - Vector(0, 0.5f, 1).normalized()).length(), 1e-6f);
 }
 
 TEST(Camera, LooksAtItsTargetFromAnywhereAndIgnoresTheScaleOfItsTransform) {
@@ -474,11 +474,12 @@ TEST(Camera, LooksAtItsTargetFromAnywhereAndIgnoresTheScaleOfItsTransform) {
         description.camera.to_world = Matrix(s * left.x, s * left.y, s * left.z, 0, s * up.x, s * up.y, s * up.z, 0,
                                              s * forward.x, s * forward.y, s * forward.z, 0, eye.x, eye.y, eye.z, 1);
         const Scene scene = build_scene(description, Resolution{101, 51});
-        const auto hit = intersect(scene, {scene.camera.position, scene.camera.direction(50.5, 25.5)});
+        const auto hit =
+            intersect(scene, {scene.camera.position, scene.camera.ray(50.5, 25.5, Imath::V2f(0.0f)).direction});
         ASSERT_TRUE(hit);
         EXPECT_LT((hit->position - to_box(scene, target)).length(), 1e-6f);
-        EXPECT_GT(scene.camera.direction(0, 25.5).dot(Vector(left)), 0.0f);
-        EXPECT_GT(scene.camera.direction(50.5, 0).dot(Vector(up)), 0.0f);
+        EXPECT_GT(scene.camera.ray(0, 25.5, Imath::V2f(0.0f)).direction.dot(Vector(left)), 0.0f);
+        EXPECT_GT(scene.camera.ray(50.5, 0, Imath::V2f(0.0f)).direction.dot(Vector(up)), 0.0f);
     }
 }
 

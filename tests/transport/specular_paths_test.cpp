@@ -182,8 +182,9 @@ TEST(SplitPaths, HaveTheMeanOfAnUnbiasedWalk) {
         ColorD mean(0.0);
         ColorD squares(0.0);
         for (int walk = 0; walk < walks; ++walk) {
-            const Ray ray{scene.camera.position,
-                          scene.camera.direction(pixel % resolution + 0.5, pixel / resolution + 0.5)};
+            const Ray ray{
+                scene.camera.position,
+                scene.camera.ray(pixel % resolution + 0.5, pixel / resolution + 0.5, Imath::V2f(0.0f)).direction};
             const ColorD value = stochastic_walk(scene, ray, random);
             mean += value / walks;
             squares += value * value / walks;

@@ -1,0 +1,61 @@
+// What ppm and sppm share: their settings as those of a radius rule, what they ask of a gather, and where radii begin.
+
+#pragma once
+
+#include <cmath>
+
+#include "gather/adaptive_radius.h"
+#include "gather/radius_rule.h"
+#include "integrators/density_estimate.h"
+
+namespace photonlab {
+
+/// No radius shrinks below it.
+inline constexpr double smallest_squared_radius = PhotonMap::minimum_radius * PhotonMap::minimum_radius;
+
+/// What the loop has to give: passes of a blind schedule can be taken from any number on.
+inline Needs progressive_needs(const MethodSettings& settings) {
+    return {.photons = Needs::Photons::OfPass,
+            .passes = is_blind(settings.schedule) ? Needs::Passes::Independent : Needs::Passes::Ordered};
+}
+
+inline RadiusRuleSettings radius_rule_settings(const MethodSettings& settings) {
+    return {.schedule = settings.schedule,
+            .alpha = settings.alpha,
+            .kernel = settings.kernel,
+            .kappa = settings.kappa,
+            .smallest_radius = settings.smallest_radius,
+            .largest_radius = settings.largest_radius,
+            .variant = settings.test_variant,
+            .test_photons = static_cast<double>(settings.test_photons),
+            .test_shrink = settings.test_shrink,
+            .test_growth = settings.test_growth};
+}
+
+/// The factor that the passes before `pass` would have put on a squared radius under a blind rule.
+inline double shrink_before(const RadiusRule& rule, std::uint64_t pass) {
+    double shrink = 1.0;
+    for (std::uint64_t before = 1; before < pass; ++before) shrink *= rule.shrink_after(before);
+    return shrink;
+}
+
+inline bool starts_at_nearest(const MethodSettings& settings) {
+    return settings.start == StartRadius::Nearest &&
+           (settings.schedule == ScheduleName::ChiSquare || settings.schedule == ScheduleName::FTest);
+}
+
+/// The squared distance of photon number `test_photons` from the point, or that of the largest radius where there are
+/// fewer: 100 pixels of a picture as wide as the scene. A gather within it does not find that photon itself, so that
+/// what it finds is k - 1 photons in the k-th one's disc, which is not too bright (docs/theory.md, section 4).
+inline double nearest_squared_radius(const PhotonMap& map, const HitPoint& point, const MethodSettings& settings,
+                                     const IntegratorContext& context) {
+    constexpr double just_inside = 1.0 - 1e-15;
+    const double pixel = static_cast<double>(context.scene.bounding_radius) /
+                         std::min(context.hit_points.width, context.hit_points.height);
+    const NearestPhotons nearest =
+        map.nearest(point.position, point.normal, static_cast<std::size_t>(settings.test_photons), 100.0 * pixel,
+                    [](const Photon&, double, double) {});
+    return nearest.squared_radius * just_inside * just_inside;
+}
+
+}  // namespace photonlab

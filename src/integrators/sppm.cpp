@@ -1,0 +1,234 @@
+// Stochastic progressive photon mapping: new hit points in every pass, so that the image converges to the mean of the
+// radiance over whatever they are drawn from: the area of the pixel, the lens, the ways behind glass. Statistics belong
+// to the pixel.
+//
+// A pixel has one shrink factor S, and each of its hit points the radius r_1 sqrt(S), with r_1 its own initial radius:
+// distant, mirrored and near points keep sensible discs. Where `radius` is given all r_1 are that, which is the paper's
+// rule. As in ppm.cpp the image is the running mean of what the passes give by themselves; a pass whose path ends
+// nowhere counts.
+//
+// [Hachisuka & Jensen 2009, "Stochastic Progressive Photon Mapping"; the shared factor is ours: docs/theory.md, section
+// 9]
+
+#include <algorithm>
+#include <optional>
+
+#include "core/parallel.h"
+#include "gather/photon_map.h"
+#include "gather/search_order.h"
+#include "integrators/error_estimate.h"
+#include "integrators/layers.h"
+#include "integrators/progressive.h"
+#include "integrators/registry.h"
+
+namespace photonlab {
+
+namespace {
+
+class StochasticProgressivePhotonMapping : public Integrator {
+public:
+    StochasticProgressivePhotonMapping(const MethodSettings& settings, const IntegratorContext& context)
+        : settings_(settings),
+          context_(context),
+          pixels_(pixel_count(context.hit_points)),
+          rule_(make_radius_rule(radius_rule_settings(settings), pixels_)),
+          statistics_(pixels_, GatherStatistics{.squared_radius = 1.0}) {
+        if (settings.estimate_error == ErrorEstimation::On) error_.emplace(pixels_, pixels_);
+        set_radii(context.hit_points);
+    }
+
+    void take(const Pass& pass) override {
+        if (passes_ == 0) begin_at(pass);
+        ++passes_;
+        with_moments(error_ || rule_->wants_curvature(), rule_->wants_sectors(),
+                     [&]<typename Moments>(std::type_identity<Moments>) { gather<Moments>(pass); });
+        set_radii(pass.points);
+    }
+
+    MethodLayers image(const PhotonsOfAllPasses*) override {
+        const double scale = context_.scene.total_power;
+        MethodLayers layers;
+        layers.gathered.reserve(pixels_);
+        for (const GatherStatistics& statistics : statistics_)
+            layers.gathered.push_back(Color(statistics.estimate * scale));
+        if (error_ && passes_ > 0)
+            layers.estimated_error = error_->of_image(
+                [&](const auto& add) {
+                    for (std::size_t pixel = 0; pixel < pixels_; ++pixel) add(pixel, pixel, ColorD(1.0));
+                },
+                settings_.kernel, scale, passes_);
+        return layers;
+    }
+
+    /// Radii are those that the hit points of the last pass would have in the next.
+    IntegratorReport report() const override {
+        IntegratorReport report = radii_;
+        report.photons_gathered = photons_gathered_;
+        report.bytes = pixels_ * sizeof(GatherStatistics) + rule_->bytes() + (error_ ? error_->bytes() : 0);
+        return report;
+    }
+
+    /// Of the pixel that the hit point is in; the radius is that which this point would have.
+    std::optional<GatherState> gather_state(std::size_t hit_point) const override {
+        const GatherStatistics& at = statistics_[context_.hit_points.points[hit_point].pixel];
+        GatherState state;
+        state.radius =
+            initial_radius(settings_, context_, hit_point) * std::sqrt(at.squared_radius) * context_.scene.unit_length;
+        state.photons = at.count;
+        state.radiance = at.estimate * context_.scene.total_power;
+        return state;
+    }
+
+    void exchange(StateArchive& archive) override {
+        archive.exchange(passes_);
+        archive.exchange_as_many(statistics_);
+        archive.exchange(photons_gathered_);
+        archive.exchange(radii_);
+        rule_->exchange(archive);
+        if (error_) error_->exchange(archive);
+    }
+
+private:
+    /// Unit box; before any shrinking.
+    double radius_at(const HitPoints& points, std::size_t i) const {
+        return chosen_radius(settings_.radius, settings_.footprints * static_cast<double>(points.footprints[i]),
+                             context_.scene);
+    }
+
+    void set_radii(const HitPoints& points) {
+        photonlab::set_radii(
+            radii_, points.points.size(),
+            [&](std::size_t i) {
+                return radius_at(points, i) * std::sqrt(statistics_[points.points[i].pixel].squared_radius);
+            },
+            context_.scene.unit_length);
+    }
+
+    void begin_at(const Pass& pass) {
+        if (pass.number > 1) {
+            const double shrink = shrink_before(*rule_, pass.number);
+            for (GatherStatistics& statistics : statistics_) statistics.squared_radius *= shrink;
+        }
+        if (!starts_at_nearest(settings_)) return;
+        std::vector<bool> has_begun(pixels_, false);
+        for (std::size_t i = 0; i < pass.points.points.size(); ++i) {
+            const HitPoint point = pass.points.points[i];
+            if (has_begun[point.pixel]) continue;
+            has_begun[point.pixel] = true;
+            const double radius = radius_at(pass.points, i);
+            statistics_[point.pixel].squared_radius =
+                nearest_squared_radius(*pass.photons, point, settings_, context_) / (radius * radius);
+        }
+    }
+
+    /// What one hit point brings to its pixel.
+    struct Part {
+        ColorD estimate = ColorD(0.0);
+        std::uint64_t found = 0;
+        MomentsOfPass moments;  // where they are asked for
+    };
+
+    template <typename Moments>
+    void gather(const Pass& pass) {
+        const HitPointList& points = pass.points.points;
+        const SearchOrder order(points);
+        std::vector<PassGather> of_pixels(pixels_);
+        std::vector<MomentsOfPass> moments(Moments::are_none ? 0 : pixels_);
+        std::vector<ColorD> estimates(points.size());
+        std::vector<std::uint32_t> found(points.size());
+        std::vector<MomentsOfPass> parts(Moments::are_none ? 0 : points.size());
+        parallel_for(block_count(points.size(), hit_points_per_block), context_.threads, [&](std::size_t block) {
+            const BlockRange range = block_range(block, points.size(), hit_points_per_block);
+            const auto gathered =
+                gather_within<Moments>(*pass.photons, context_.scene, points, order, range, settings_,
+                                       [&](std::size_t i) { return reach_of<Moments>(pass.points, i); });
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                const PointGather<Moments>& at = gathered[i - range.begin];
+                const double paths = static_cast<double>(pass.paths_emitted);
+                const double radius = reach_of<Moments>(pass.points, i).radius;
+                const ColorD weight(points[i].weight);
+                estimates[i] = weight * at.sum.flux() / (pi * radius * radius * paths);
+                found[i] = static_cast<std::uint32_t>(at.sum.count());
+                if constexpr (!Moments::are_none) {
+                    const double unit = radius_at(pass.points, i);
+                    parts[i] = at.moments.of_pass(at.sum.factor() * weight, paths, unit * unit);
+                }
+            }
+        });
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            PassGather& pixel = of_pixels[points[i].pixel];
+            pixel.estimate += estimates[i];
+            pixel.found += found[i];
+            photons_gathered_ += found[i];
+            if constexpr (!Moments::are_none) moments[points[i].pixel] += parts[i];
+        }
+        take_pixels(pass, of_pixels, moments);
+    }
+
+    template <typename Moments>
+    GatherReach reach_of(const HitPoints& points, std::size_t i) const {
+        const double unit = radius_at(points, i);
+        const double share = std::sqrt(statistics_[points.points[i].pixel].squared_radius);
+        GatherReach reach{.radius = std::max(unit * share, PhotonMap::minimum_radius)};
+        if constexpr (Moments::has_curvature)
+            reach.bandwidth = std::sqrt(squared_curvature_bandwidth(settings_.laplacian_radius, unit * unit, passes_));
+        return reach;
+    }
+
+    void take_pixels(const Pass& pass, std::vector<PassGather>& of_pixels, const std::vector<MomentsOfPass>& moments) {
+        for (std::size_t pixel = 0; pixel < pixels_; ++pixel) {
+            PassGather& gathered = of_pixels[pixel];
+            GatherStatistics& statistics = statistics_[pixel];
+            gathered.pass = pass.number;
+            gathered.passes = passes_;
+            if (!moments.empty()) {
+                gathered.curvature = &moments[pixel].curvature;
+                gathered.sectors = &moments[pixel].sectors;
+            }
+            if (error_) {
+                error_->take_region(pixel, moments[pixel].curvature, statistics.squared_radius, passes_);
+                error_->take_pixel(pixel, mean_channel(gathered.estimate), passes_);
+            }
+            take_pass(statistics, *rule_, pixel, gathered, smallest_squared_radius);
+        }
+    }
+
+    const MethodSettings settings_;
+    const IntegratorContext context_;
+    const std::size_t pixels_;
+    const std::unique_ptr<RadiusRule> rule_;
+    std::uint64_t passes_ = 0;                  // taken so far, from whichever pass they began at
+    std::vector<GatherStatistics> statistics_;  // one a pixel; squared radii in shares of each hit point's initial one
+    std::optional<ErrorEstimate> error_;        // where it is asked for
+    IntegratorReport radii_;                    // of which only the radii are set
+    std::uint64_t photons_gathered_ = 0;
+};
+
+}  // namespace
+
+IntegratorKind sppm_kind() {
+    return {.name = "sppm",
+            .label = "SPPM",
+            .paper = "Hachisuka and Jensen 2009",
+            .needs =
+                [](const MethodSettings& settings) {
+                    Needs needs = progressive_needs(settings);
+                    needs.new_points = NewPoints{.positions = settings.positions, .branches = settings.branches};
+                    return needs;
+                },
+            .settings = {"positions",       "branches",
+                         "schedule",        "alpha",
+                         "kappa",           "smallest_radius",
+                         "largest_radius",  "laplacian_radius",
+                         "test_variant",    "start",
+                         "test_photons",    "test_shrink",
+                         "test_growth",     "estimate_error",
+                         "radius",          "footprints",
+                         "kernel",          "eps",
+                         "direct",          "direct_samples",
+                         "max_depth",       "branch_cutoff",
+                         "photons_per_pass"},
+            .make = make_integrator_of<StochasticProgressivePhotonMapping>};
+}
+
+}  // namespace photonlab
