@@ -333,7 +333,7 @@ private:
     }
 
     /// Both lengths in scene units; a scale of to_world does not change them, as in Mitsuba.
-    void read_lens(const Properties& properties, std::optional<double> focus_distance) {
+    void read_lens(Properties& properties, std::optional<double> focus_distance) {
         const auto aperture_radius = properties.number("aperture_radius");
         const auto require = [&](const char* name, const std::optional<double>& length) {
             if (!length || !(*length > 0.0))

@@ -242,7 +242,7 @@ private:
                    std::vector<Branch>& pending, Tile& tile) const {
         const Vector outgoing = surface.frame.to_local(-branch.ray.direction);
         SpecularBranches onward = specular_branches(surface.bsdf, outgoing, Carried::Radiance);
-        if (branches_ == Branches::One && onward.count > 1) onward = one_of(onward, random->next());
+        if (random && branches_ == Branches::One && onward.count > 1) onward = one_of(onward, random->next());
         for (const SpecularBranch& way : onward) {
             const Vector direction = surface.frame.to_world(way.incoming);
             if (!sides_agree(surface, direction)) continue;  // absorbed, as for every path here
@@ -269,7 +269,8 @@ private:
             below -= weight;
         }
         const double probability = mean_channel(ColorD(chosen->weight)) / all;
-        SpecularBranches one;
+        SpecularBranches one = ways;
+        one.count = 0;
         if (probability > 0.0) one.add(chosen->incoming, chosen->weight * static_cast<float>(1.0 / probability));
         return one;
     }

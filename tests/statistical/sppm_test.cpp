@@ -1,0 +1,218 @@
+// Stochastic progressive photon mapping against ppm where both are the same method, and against the mean over a region
+// where they are not.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/statistical/rendering.h"
+#include "tests/statistical/scenes.h"
+#include "tests/statistical/significance.h"
+
+namespace photonlab::test {
+namespace {
+
+// One position a pixel and one hit point each: statistics of a pixel are those of its hit point. r_1^2 S is rounded in
+// another order than r^2.
+TEST(StochasticProgressive, OfOnePositionIsProgressivePhotonMapping) {
+    const Scene scene = build_scene(room(12, 12));
+    const HitPoints hit_points = trace_hit_points(scene, 1, 1);
+    for (const auto& [schedule, name] : schedule_names)
+        for (const std::optional<double> radius : {std::optional<double>(), std::optional<double>(0.2)}) {
+            MethodSettings method{.schedule = schedule, .radius = radius, .footprints = 3.0, .photons_per_pass = 500};
+            PassLoop fixed = loop_of(method, scene, hit_points);
+            method.integrator = "sppm";
+            PassLoop stochastic = loop_of(method, scene, hit_points);
+            for (std::uint64_t pass = 1; pass <= 40; ++pass) {
+                fixed.take(pass);
+                stochastic.take(pass);
+            }
+            for (std::size_t i = 0; i < hit_points.points.size(); ++i) {
+                const GatherState a = *fixed.integrator(0).gather_state(i);
+                const GatherState b = *stochastic.integrator(0).gather_state(i);
+                EXPECT_NEAR(b.radius, a.radius, 1e-12 * a.radius) << name;
+                EXPECT_EQ(b.photons, a.photons) << name;
+                for (int c = 0; c < 3; ++c) EXPECT_NEAR(b.radiance[c], a.radiance[c], 1e-12 * a.radiance[c]) << name;
+            }
+        }
+}
+
+// Hachisuka's second invariant: N / S is the sum of M_k / S_k over the passes, S_k being the factor before the pass
+// shrank it; and one pass multiplies S by alpha at most.
+TEST(StochasticProgressive, KeepsHachisukasInvariant) {
+    for (const double alpha : {0.3, 0.7, 0.95}) {
+        const auto rule = make_radius_rule({.alpha = alpha}, 1);
+        GatherStatistics pixel{.squared_radius = 1.0};
+        double sum = 0.0;
+        RandomStream random(3, RandomPurpose::Test, 0, 0);
+        for (std::uint64_t pass = 1; pass <= 2000; ++pass) {
+            const double found = std::floor(4.0 * static_cast<double>(random.next()));
+            const double before = pixel.squared_radius;
+            sum += found / before;
+            take_pass(pixel, *rule, 0, {.pass = pass, .passes = pass, .found = found}, 0.0);
+            EXPECT_GE(pixel.squared_radius, alpha * before * (1.0 - 1e-15));
+        }
+        EXPECT_NEAR(pixel.count / pixel.squared_radius, sum, 1e-12 * sum) << alpha;
+    }
+}
+
+TEST(StochasticProgressive, WithAlphaOneNeverShrinks) {
+    const Scene scene = build_scene(room(6, 6));
+    for (const ScheduleName schedule : {ScheduleName::Hachisuka, ScheduleName::KnausZwicker}) {
+        const MethodSettings method{
+            .integrator = "sppm", .schedule = schedule, .alpha = 1.0, .radius = 0.2, .photons_per_pass = 200};
+        const Rendering rendering = render(scene, method, {.passes = 20, .samples_per_pixel = 4});
+        for (const double radius : rendering.radii) EXPECT_NEAR(radius, 0.2, 1e-15);
+    }
+}
+
+/// A floor lit by a point light of intensity `intensity` at height 1 above the origin, seen from straight above: pixels
+/// of 0.2 x 0.2 over x in [1, 1.6], z in [-0.2, 0.2].
+Scene floor_region(const Color& reflectance) {
+    SceneDescription description;
+    description.materials = {diffuse(reflectance)};
+    description.shapes = {disk(VectorD(0.0), VectorD(0, 1, 0), 40.0, 0)};
+    description.lights = {point_light(VectorD(0, 1, 0), ColorD(1.0))};
+    const double height = 10.0;
+    description.camera =
+        look_at(VectorD(1.3, height, 0.0), VectorD(1.3, 0.0, 0.0), 2, 3, 2.0 * std::atan(0.2 / height) * 180.0 / pi);
+    return build_scene(description);
+}
+
+// Before anything is concluded from it.
+TEST(StochasticProgressive, LooksAtTheRegion) {
+    const Scene scene = floor_region(Color(0.5f));
+    for (std::uint64_t pass = 1; pass <= 50; ++pass) {
+        const HitPoints points = trace_new_hit_points(scene, 1, {.positions = Positions::Box}, {.pass = pass}, 1);
+        ASSERT_EQ(points.points.size(), 6u);
+        for (const HitPoint point : points.points) {
+            const VectorD at = VectorD(point.position) * scene.unit_length + scene.centre;
+            EXPECT_NEAR(at.y, 0.0, 1e-6);
+            EXPECT_LE(std::abs(at.x - 1.3), 0.3 + 1e-5);
+            EXPECT_LE(std::abs(at.z), 0.2 + 1e-5);
+        }
+    }
+}
+
+// Radii that do not depend on photons: the expected mean after 6 passes is a quadrature over the region of the mean over
+// passes of the blurred irradiance, 0.2390122 for r_1 = 0.5 and alpha 2/3; without blur it is 0.2329921.
+TEST(StochasticProgressive, ConvergesToTheMeanOverARegionOfTheBlurredLight) {
+    const Scene scene = floor_region(Color(0.5f));
+    const MethodSettings method{.integrator = "sppm",
+                                .schedule = ScheduleName::KnausZwicker,
+                                .alpha = 2.0 / 3.0,
+                                .positions = Positions::Box,
+                                .radius = 0.5,
+                                .direct = DirectMode::Photons,
+                                .photons_per_pass = 20'000};
+    const HitPoints grid = trace_hit_points(scene, 1, 1);
+    std::vector<double> irradiance;
+    for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+        const Rendering rendering = render(scene, grid, method, {.passes = 6, .seed = seed});
+        irradiance.push_back(mean_of(rendering.image, gathered_layer).x * pi / 0.5);
+    }
+    ClaimFamily claims;
+    claims.mean_is("mean irradiance", irradiance, 0.2390122, 0.004);
+}
+
+// One of the grid's positions a pass converges to what ppm gives with all of them in every pass; each comes once in as
+// many passes as there are.
+TEST(StochasticProgressive, OnTheGridAgreesWithProgressivePhotonMappingOfAllPositions) {
+    const Scene scene = build_scene(room(8, 8));
+    constexpr int positions = 16;
+    const HitPoints grid = trace_hit_points(scene, positions, 1);
+    MethodSettings method{.schedule = ScheduleName::KnausZwicker, .footprints = 1.0, .photons_per_pass = 3000};
+    ClaimFamily claims;
+    for (const std::string_view layer : {direct_layer, gathered_layer}) {
+        std::vector<double> all;
+        std::vector<double> one;
+        for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+            method.integrator = "ppm";
+            all.push_back(
+                mean_of(render(scene, grid, method, {.passes = 16, .seed = seed, .samples_per_pixel = 16}).image, layer)
+                    .x);
+            method.integrator = "sppm";
+            one.push_back(mean_of(render(scene, grid, method, {.passes = 16, .seed = 100 + seed, .samples_per_pixel = 16})
+                                      .image,
+                                  layer)
+                              .x);
+        }
+        claims.means_agree(std::string(layer), one, all, 0.02);
+    }
+}
+
+TEST(NewHitPoints, TakeEveryPositionOfTheGridOnceInACycle) {
+    const Scene scene = build_scene(room(4, 4));
+    for (const int positions : {1, 4, 9, 16}) {
+        const HitPoints grid = trace_hit_points(scene, positions, 1);
+        for (const std::uint64_t cycle : {0u, 3u}) {
+            std::vector<int> met(grid.points.size(), 0);
+            for (std::uint64_t place = 1; place <= static_cast<std::uint64_t>(positions); ++place) {
+                const HitPoints points = trace_new_hit_points(
+                    scene, positions, {}, {.seed = 9, .pass = cycle * static_cast<std::uint64_t>(positions) + place}, 1);
+                for (const HitPoint point : points.points)
+                    for (std::size_t i = 0; i < grid.points.size(); ++i)
+                        met[i] += grid.points[i].pixel == point.pixel && grid.points[i].position == point.position;
+            }
+            for (const int times : met) EXPECT_EQ(times, 1) << positions;
+        }
+    }
+}
+
+// A pixel half of which a black card hides has half the radiance; and one over two materials the mean of theirs.
+TEST(StochasticProgressive, AveragesOverWhatThePixelSees) {
+    for (const bool is_half_hidden : {true, false}) {
+        SceneDescription description;
+        description.materials = {diffuse(Color(0.8f)), diffuse(Color(is_half_hidden ? 0.8f : 0.2f)),
+                                 diffuse(Color(0.0f), true)};
+        description.shapes = {shape(parallelogram(VectorD(-20, 0, -20), VectorD(0, 0, 40), VectorD(20, 0, 0)), 0),
+                              shape(parallelogram(VectorD(0, 0, -20), VectorD(0, 0, 40), VectorD(20, 0, 0)), 1)};
+        if (is_half_hidden)
+            description.shapes.push_back(
+                shape(parallelogram(VectorD(0, 7.9, -1), VectorD(0, 0, 2), VectorD(1, 0, 0)), 2));
+        description.lights = {point_light(VectorD(0, 7.5, 0), ColorD(1000.0))};
+        description.camera = look_at(VectorD(0.0, 8.0, 0.0), VectorD(0.0), 1, 1, 5.0);
+        const Scene scene = build_scene(description);
+        const MethodSettings method{.integrator = "sppm",
+                                    .positions = Positions::Box,
+                                    .radius = 0.3,
+                                    .direct = DirectMode::Photons,
+                                    .max_depth = 2,
+                                    .photons_per_pass = 20'000};
+        const HitPoints grid = trace_hit_points(scene, 1, 1);
+        std::vector<double> radiance;
+        for (std::uint64_t seed = 1; seed <= 80; ++seed)
+            radiance.push_back(
+                mean_of(render(scene, grid, method, {.passes = 16, .seed = seed}).image, gathered_layer).x);
+        // The irradiance of the middle; over the pixel and the disc, 0.35 and 0.3 wide, it is 0.4% less at most.
+        const double albedo = is_half_hidden ? 0.4 : 0.5;
+        ClaimFamily claims;
+        claims.mean_is(is_half_hidden ? "half hidden" : "two materials", radiance, albedo / pi * 1000.0 / 56.25, 0.03,
+                       0.004);
+    }
+}
+
+// Glass between camera and floor: all ways of the camera path, or one by chance.
+TEST(StochasticProgressive, OfOneBranchHasTheMeanOfAll) {
+    SceneDescription description = room(8, 8);
+    description.materials.push_back({.id = "glass", .bsdf = Dielectric{}});
+    description.shapes.push_back(sphere(VectorD(-0.2, -0.3, -0.9), 0.5, false, description.materials.size() - 1));
+    const Scene scene = build_scene(description);
+    const HitPoints grid = trace_hit_points(scene, 1, 1);
+    MethodSettings method{.integrator = "sppm", .alpha = 1.0, .radius = 0.3, .photons_per_pass = 3000};
+    std::vector<std::vector<double>> means(2);
+    for (const Branches branches : {Branches::All, Branches::One})
+        for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+            method.branches = branches;
+            means[branches == Branches::One].push_back(
+                mean_total(render(scene, grid, method,
+                                  {.passes = 16, .seed = seed + (branches == Branches::One ? 500 : 0)})
+                               .image)
+                    .x);
+        }
+    ClaimFamily claims;
+    claims.means_agree("one branch against all", means[1], means[0], 0.01);
+}
+
+}  // namespace
+}  // namespace photonlab::test
