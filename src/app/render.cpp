@@ -25,6 +25,7 @@
 #include "image/image_codecs.h"
 #include "integrators/registry.h"
 #include "record/columns.h"
+#include "record/estimated_error.h"
 #include "reference/reference.h"
 #include "render/estimates/memory.h"
 #include "scene/loader.h"
@@ -51,7 +52,12 @@ struct RenderOptions {
     std::string checkpoint;
     double checkpoint_seconds = default_seconds_between_saves;
     bool resume = false;
+    std::optional<double> stop_at;
+    double confidence = 0.9;
 };
+
+/// Share of the lit pixels that --stop-at wants to be good.
+constexpr double share_of_pixels = 0.95;
 
 std::filesystem::path snapshot_file(const std::filesystem::path& output, std::uint64_t pass) {
     return output.parent_path() / fmt::format("{}-pass-{}.exr", output.stem().string(), pass);
@@ -61,10 +67,11 @@ void print_summary(const RunState& state, const RunSettings& settings, const Sce
                    const std::optional<ErrorMetrics>& errors) {
     print_output("{}: {} passes of {}, {} hit points, seed {}\n", scene.name, state.pass, settings.method.integrator,
                  hit_points, settings.seed);
-    print_output("time        {} (CPU {}): trace {}, build {}, gather {}, direct light {}\n",
+    const auto time_of = [&](Stage stage) { return describe_duration(state.times.of(stage)); };
+    print_output("time        {} (CPU {}): trace {}, build {}, gather {}, direct light {}{}\n",
                  describe_duration(state.times.total()), describe_duration(state.times.cpu_total()),
-                 describe_duration(state.times.of(Stage::Trace)), describe_duration(state.times.of(Stage::Build)),
-                 describe_duration(state.times.of(Stage::Gather)), describe_duration(state.times.of(Stage::Direct)));
+                 time_of(Stage::Trace), time_of(Stage::Build), time_of(Stage::Gather), time_of(Stage::Direct),
+                 needs_of(settings.method).new_points ? ", hit points " + time_of(Stage::Points) : "");
     if (state.paths_emitted > 0)
         print_output("photons     {} stored of {} paths, {} gathered\n", state.photons_stored, state.paths_emitted,
                      state.report.photons_gathered);
@@ -224,6 +231,14 @@ RunFiles files_of(const RenderOptions& options, const std::string& key) {
     return files;
 }
 
+std::function<bool(const Image&)> good_enough(const RenderOptions& options) {
+    if (!options.stop_at) return {};
+    return [&options](const Image& image) {
+        return image.estimated_error && share_within(*image.estimated_error, *image.find(gathered_layer),
+                                                     *options.stop_at, options.confidence) >= share_of_pixels;
+    };
+}
+
 /// Makes the run with a progress line. Throws Interrupted when it was.
 FinishedRunState make_run(const RenderOptions& options, const RunGroup& group) {
     if (options.resume && !std::filesystem::exists(options.checkpoint))
@@ -231,7 +246,10 @@ FinishedRunState make_run(const RenderOptions& options, const RunGroup& group) {
     listen_for_interruptions();
     Progress progress(options.passes);
     const GroupOutcome outcome =
-        run_group(group, {.seconds_between_saves = options.checkpoint_seconds, .is_interrupted = is_interrupted},
+        run_group(group,
+                  {.seconds_between_saves = options.checkpoint_seconds,
+                   .is_interrupted = is_interrupted,
+                   .is_good_enough = good_enough(options)},
                   [&](std::uint64_t pass, bool is_new) {
                       if (!is_new) progress.skip(pass);
                       progress.show(pass, fmt::format("pass {} of {}", pass, options.passes));
@@ -245,18 +263,22 @@ FinishedRunState make_run(const RenderOptions& options, const RunGroup& group) {
     return outcome.runs.at(0);
 }
 
-void print_written(const RenderOptions& options, const std::vector<std::uint64_t>& snapshots) {
+/// `last`: the pass that it ended with.
+void print_written(const RenderOptions& options, const std::vector<std::uint64_t>& snapshots, std::uint64_t last) {
     print_output("wrote       {}\n", options.output.string());
     for (const std::string& file : {options.png, options.csv})
         if (!file.empty()) print_output("wrote       {}\n", file);
     if (!options.csv.empty()) print_output("wrote       {}\n", columns_file(options.csv).string());
     for (const std::uint64_t pass : snapshots)
-        print_output("wrote       {}\n", snapshot_file(options.output, pass).string());
+        if (pass <= last) print_output("wrote       {}\n", snapshot_file(options.output, pass).string());
 }
 
 void render(const RenderOptions& options) {
     require_consistent(options);
     const ChosenSettings chosen = options.method.settings();
+    if (options.stop_at && (!uses_setting(chosen.values, "estimate_error") ||
+                            chosen.values.estimate_error == ErrorEstimation::Off))
+        throw InputError("--stop-at: expected --estimate-error on, and a method that has it");
     check_options([&] { require_perfect_square(options.samples_per_pixel); });
     const std::vector<std::uint64_t> snapshots = snapshots_of(options);
     std::optional<Resolution> resolution;
@@ -271,7 +293,7 @@ void render(const RenderOptions& options) {
     std::optional<Reference> reference;
     if (!options.reference.empty())
         reference = load_reference(options.reference,
-                                   subject_of(scene, options.samples_per_pixel, prepared.settings.method.max_depth));
+                                   subject_of(scene, options.samples_per_pixel, prepared.settings.method));
     require_room_for(options, snapshots, scene);
 
     const MemoryEstimate memory = MemoryEstimator(scene, options.samples_per_pixel).of({prepared.settings}, 0);
@@ -290,14 +312,21 @@ void render(const RenderOptions& options) {
     const FinishedRunState finished =
         make_run(options, {experiment, scene, hit_points, reference ? &*reference : nullptr, {}, {&prepared}});
     if (!options.csv.empty()) write_columns(columns_file(options.csv));
-    if (!snapshots.empty() && snapshots.back() == options.passes)
+    if (std::binary_search(snapshots.begin(), snapshots.end(), finished.state.pass))
         write_text_file(snapshot_file(options.output, options.passes), read_text_file(options.output));
 
     print_summary(finished.state, prepared.settings, scene, hit_points.points.size(), finished.errors);
     for (const std::string& reason : why_images_are_plain(scene, hit_points)) print_output("note        {}\n", reason);
     if (const auto warning = reference ? warning_about(*reference) : std::nullopt)
         print_output("note        {}\n", *warning);
-    print_written(options, snapshots);
+    if (options.stop_at)
+        print_output("stop        {}\n",
+                     finished.state.pass < options.passes
+                         ? fmt::format("{:g}% of the lit pixels are within {:g} with confidence {:g}, as far as is "
+                                       "estimated",
+                                       100.0 * share_of_pixels, *options.stop_at, options.confidence)
+                         : "not before the last pass");
+    print_written(options, snapshots, finished.state.pass);
 }
 
 }  // namespace
@@ -310,6 +339,15 @@ void add_render_command(CLI::App& app) {
     options->method.add_to(*command);
     command->add_option("--passes", options->passes, fmt::format("number of passes [{}]", options->passes))
         ->check(CLI::Range(1u, 0xffffffffu));
+    command
+        ->add_option("--stop-at", options->stop_at,
+                     "ends when 95% of the lit pixels of the gathered light are within this relative error, as far as "
+                     "--estimate-error on knows")
+        ->check(CLI::PositiveNumber);
+    command
+        ->add_option("--confidence", options->confidence,
+                     fmt::format("with which --stop-at asks for it, in (0, 1) [{:g}]", options->confidence))
+        ->check(CLI::Range(1e-6, 1.0 - 1e-6));
     command->add_option("--seed", options->seed, fmt::format("of all random numbers [{}]", options->seed))
         ->check(require_whole_number);
     command->add_option("--threads", options->threads, "threads to use [all]; the image does not depend on it")

@@ -101,8 +101,13 @@ RunSettings settings_of(const Experiment& experiment, const ExperimentRun& run, 
     return settings;
 }
 
-ReferenceSubject subject_of(const Scene& scene, int samples_per_pixel, int max_depth) {
-    return {scene.hash, scene.camera.width, scene.camera.height, samples_per_pixel, max_depth};
+ReferenceSubject subject_of(const Scene& scene, int samples_per_pixel, const MethodSettings& method) {
+    return {scene.hash,
+            scene.camera.width,
+            scene.camera.height,
+            samples_per_pixel,
+            method.max_depth,
+            uses_setting(method, "positions") ? method.positions : Positions::Grid};
 }
 
 namespace {
@@ -151,13 +156,12 @@ private:
     }
 
     /// Empty without one.
-    std::string reference_key_of(const ExperimentRun& run, const Scene& scene, int max_depth) {
+    std::string reference_key_of(const ExperimentRun& run, const Scene& scene, const MethodSettings& method) {
         const SceneEntry& entry = experiment_.scenes[run.scene];
         if (!entry.reference) return "";
-        const auto [known, is_new] = reference_keys_.try_emplace({run.scene, max_depth});
-        if (is_new)
-            known->second =
-                check_reference(*entry.reference, subject_of(scene, experiment_.samples_per_pixel, max_depth));
+        const ReferenceSubject subject = subject_of(scene, experiment_.samples_per_pixel, method);
+        const auto [known, is_new] = reference_keys_.try_emplace({run.scene, subject.max_depth, subject.positions});
+        if (is_new) known->second = check_reference(*entry.reference, subject);
         return known->second;
     }
 
@@ -172,7 +176,7 @@ private:
         } catch (const InputError& error) {
             throw InputError(experiment_.file.string(), fmt::format("run {}: {}", run.name, error.what()));
         }
-        point.reference_key = reference_key_of(run, scene, point.settings.method.max_depth);
+        point.reference_key = reference_key_of(run, scene, point.settings.method);
         point.key = point_key(experiment_, run, point.settings, scene, point.reference_key);
         if (experiment_.decomposition)
             point.ensemble = ensemble_of(experiment_, {&run, point.settings, "", point.key}, results_);
@@ -209,7 +213,7 @@ private:
     const std::filesystem::path& results_;
     const Check check_;
     PreparedExperiment prepared_;
-    std::map<std::pair<std::size_t, int>, std::string> reference_keys_;  // by scene and depth
+    std::map<std::tuple<std::size_t, int, Positions>, std::string> reference_keys_;  // by scene, depth and positions
     std::map<std::string, Point> points_;                                // by name
 };
 

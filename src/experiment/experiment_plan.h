@@ -46,7 +46,7 @@ std::string run_key(const std::string& point_key, const ExperimentRun& run);
 RunSettings settings_of(const Experiment& experiment, const ExperimentRun& run, const Scene& scene);
 
 /// What a reference of the scene must be of.
-ReferenceSubject subject_of(const Scene& scene, int samples_per_pixel, int max_depth);
+ReferenceSubject subject_of(const Scene& scene, int samples_per_pixel, const MethodSettings& method);
 
 /// Most runs of a group: each has a lock while it is made, which is an open file, and many systems allow 1024.
 inline constexpr std::size_t most_runs_together = 256;

@@ -93,7 +93,7 @@ public:
         const std::size_t scene_index = run.run->scene;
         const SceneEntry& entry = experiment_.scenes[scene_index];
         const Scene& scene = *prepared_.scenes[scene_index];
-        const int max_depth = run.settings.method.max_depth;
+        const ReferenceSubject subject = subject_of(scene, experiment_.samples_per_pixel, run.settings.method);
         const double cutoff = run.settings.method.branch_cutoff;
         if (scene_ != scene_index) reference_.reset();
         if (scene_ != scene_index || cutoff_ != cutoff)
@@ -101,11 +101,12 @@ public:
         if (scene_ != scene_index)
             for (const std::string& reason : why_images_are_plain(scene, hit_points_))
                 progress.finished(entry.name + ": " + reason);
-        if (entry.reference && (!reference_ || depth_ != max_depth))
-            load_reference_of(entry, subject_of(scene, experiment_.samples_per_pixel, max_depth), progress);
+        if (entry.reference && (!reference_ || depth_ != subject.max_depth || positions_ != subject.positions))
+            load_reference_of(entry, subject, progress);
         scene_ = scene_index;
         cutoff_ = cutoff;
-        depth_ = max_depth;
+        depth_ = subject.max_depth;
+        positions_ = subject.positions;
     }
 
     const HitPoints& hit_points() const { return hit_points_; }
@@ -126,6 +127,7 @@ private:
     std::optional<std::size_t> scene_;
     double cutoff_ = 0.0;
     int depth_ = -1;
+    Positions positions_ = Positions::Grid;
 };
 
 /// Makes the folder the experiment's, and asks whether the records can be written, while nobody else is at it. False

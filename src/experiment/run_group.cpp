@@ -235,6 +235,14 @@ GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options
         if (options.fresh || !load(files.checkpoint, state_of(open[i], method))) begin_anew(files);
         if (!files.snapshots.empty()) make_folder(files.snapshots);
     };
+    std::uint64_t ended_at = settings[0].passes;
+    std::function<bool(std::uint64_t, const Image&)> is_good_enough;
+    if (options.is_good_enough)
+        is_good_enough = [&](std::uint64_t pass, const Image& image) {
+            if (!options.is_good_enough(image)) return false;
+            ended_at = pass;
+            return true;
+        };
     CheckpointClock clock(options.seconds_between_saves);
     bool is_interrupted = false;
     const auto goes_on = [&](std::uint64_t pass, const std::vector<StateExchange>& methods) {
@@ -261,16 +269,21 @@ GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options
             OpenRun& run = open[method];
             run.last_shown = state;
             const PassPlan& plan = run.prepared->run->plan;
-            if (contains(plan.recorded, state.pass)) {
+            const bool is_last = state.pass == ended_at;
+            if ((state.pass < plan.passes && is_last) || contains(plan.recorded, state.pass)) {
                 run.recorder.record(state, image);
                 if (group.experiment.decomposition) run.recorded_images.push_back({state.pass, image});
             }
-            if (contains(plan.snapshots, state.pass)) {
-                const std::filesystem::path file = run.files().snapshot(state.pass);
+            if (state.pass < plan.passes && is_last && !run.record.snapshots.empty()) {  // the planned last one
+                run.record.snapshots[run.snapshots.size()] = run.record.snapshots.back();
+                run.record.snapshots.resize(run.snapshots.size() + 1);
+            }
+            if (contains(plan.snapshots, is_last ? plan.passes : state.pass)) {
+                const std::filesystem::path file = run.files().snapshot(is_last ? plan.passes : state.pass);
                 write_exr(file, image, image_metadata(run.recorder.identity(), state, group.scene));
                 run.snapshots.push_back(stamp_of(file));
             }
-            if (state.pass == plan.passes && !run.files().picture.empty())
+            if (is_last && !run.files().picture.empty())
                 write_png(run.files().picture, image.width, image.height, total(image));
         },
         on_pass,
@@ -278,7 +291,7 @@ GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options
             open[method].probes +=
                 probe_rows(open[method].recorder.identity(), probes, group.hit_points, pass, integrator);
         },
-        {restore, goes_on});
+        {restore, goes_on, is_good_enough});
 
     GroupOutcome outcome{.passes = last[0].pass};
     if (is_interrupted) return outcome;

@@ -54,6 +54,8 @@ struct ContinuationOptions {
     bool fresh = false;  ///< begin anew; checkpoints that are there are set aside
     /// Asked after every pass: true ends it there, with a checkpoint.
     std::function<bool()> is_interrupted = [] { return false; };
+    /// Asked after every pass with the image of the only run: true ends it there, finished. Empty: never.
+    std::function<bool(const Image& image)> is_good_enough = {};
 };
 
 /// What a group of runs shares.

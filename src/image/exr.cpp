@@ -260,6 +260,11 @@ std::vector<Color> rounded_total(const Image& image) {
     return sum;
 }
 
+std::vector<Layer> layers_of(const EstimatedError& error) {
+    return {{"estimated_bias", {error.bias.begin(), error.bias.end()}},
+            {"estimated_deviation", {error.deviation.begin(), error.deviation.end()}}};
+}
+
 // The file in memory: OpenEXR writes its table of offsets in a destructor, where a full disk cannot be reported.
 std::string encode(const Image& image, const Metadata& metadata, ExrCompression compression) {
     Imf::Header header(image.width, image.height);
@@ -287,6 +292,9 @@ std::string encode(const Image& image, const Metadata& metadata, ExrCompression 
     add("", layered ? sum : image.layers[0].pixels);
     if (layered)
         for (const Layer& layer : image.layers) add(layer.name + ".", layer.pixels);
+    std::vector<Layer> estimates;
+    if (image.estimated_error) estimates = layers_of(*image.estimated_error);
+    for (const Layer& layer : estimates) add(layer.name + ".", layer.pixels);
 
     Imf::StdOSStream stream;
     {

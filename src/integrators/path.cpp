@@ -99,17 +99,27 @@ void require_findable_light(const Scene& scene, int max_depth) {
 class PathTracing : public Integrator {
 public:
     PathTracing(const MethodSettings& settings, const IntegratorContext& context)
-        : max_depth_(settings.max_depth), context_(context), sums_(context.hit_points.points.size()) {
+        : max_depth_(settings.max_depth),
+          context_(context),
+          has_new_points_(settings.positions == Positions::Box),
+          sums_(has_new_points_ ? pixel_count(context.hit_points) : context.hit_points.points.size()) {
         require_findable_light(context.scene, max_depth_);
     }
 
     void take(const Pass& pass) override {
-        add_paths(pass.number, pass.points, sums_);
+        if (has_new_points_) {
+            std::vector<PathSample> of_pass(pass.points.points.size());
+            add_paths(pass.number, pass.points, of_pass);
+            add_to_pixels(pass.points.points, of_pass);
+        } else {
+            add_paths(pass.number, pass.points, sums_);
+        }
         ++passes_;
     }
 
     MethodLayers image(const PhotonsOfAllPasses*) override {
-        if (passes_ > 0) return layers_of(sums_, 1.0 / static_cast<double>(passes_), true);
+        const double share = 1.0 / static_cast<double>(passes_);
+        if (passes_ > 0) return has_new_points_ ? layers_of_pixels(share) : layers_of(sums_, share, true);
         std::vector<PathSample> once(sums_.size());
         add_paths(0, context_.hit_points, once);
         return layers_of(once, 1.0, false);
@@ -145,9 +155,27 @@ private:
                     context_.hit_points, [&](std::size_t i) { return sums[i].direct; }, scale)};
     }
 
+    void add_to_pixels(const HitPointList& points, const std::vector<PathSample>& paths) {
+        for (std::size_t i = 0; i < paths.size(); ++i) {
+            const HitPoint point = points[i];
+            sums_[point.pixel].direct += paths[i].direct * ColorD(point.weight);
+            sums_[point.pixel].gathered += paths[i].gathered * ColorD(point.weight);
+        }
+    }
+
+    MethodLayers layers_of_pixels(double scale) const {
+        MethodLayers layers;
+        for (const PathSample& sum : sums_) {
+            layers.gathered.push_back(Color(sum.gathered * scale));
+            layers.direct.push_back(Color(sum.direct * scale));
+        }
+        return layers;
+    }
+
     const int max_depth_;
     const IntegratorContext context_;
-    std::vector<PathSample> sums_;  // one a hit point, over passes
+    const bool has_new_points_;     // in every pass
+    std::vector<PathSample> sums_;  // over passes: one a hit point, or one a pixel where points are new
     std::uint64_t passes_ = 0;
 };
 
@@ -158,10 +186,13 @@ IntegratorKind path_kind() {
             .label = "path tracing",
             .paper = "Kajiya 1986, with next-event estimation and multiple importance sampling",
             .needs =
-                [](const MethodSettings&) {
-                    return Needs{.direct = Needs::Direct::ByItself, .passes = Needs::Passes::Independent};
+                [](const MethodSettings& settings) {
+                    Needs needs{.direct = Needs::Direct::ByItself, .passes = Needs::Passes::Independent};
+                    if (settings.positions == Positions::Box)
+                        needs.new_points = NewPoints{.positions = Positions::Box, .all_cells = true};
+                    return needs;
                 },
-            .settings = {"max_depth", "branch_cutoff"},
+            .settings = {"positions", "max_depth", "branch_cutoff"},
             .make = make_integrator_of<PathTracing>};
 }
 

@@ -192,6 +192,7 @@ std::vector<Column> columns_of_times() {
             "direct",
             "of `seconds`: direct light. While one thread indexes photons, the others sample it; what passes meanwhile "
             "is divided between build and direct in proportion to the CPU time of each"),
+        column_of_stage<Stage::Points>("points", "of `seconds`: new hit points, where a method makes them in every pass"),
     };
 }
 
@@ -216,6 +217,34 @@ std::vector<Column> columns_of_radii() {
         {"radius_max", Kind::Measure, Type::Number, "scene units", "largest radius", "over hit points",
          [](const Record& r) { return number(r.state.report.radius_max); }},
     };
+}
+
+/// A column of what a method says of its own error.
+template <typename Value>
+Column column_of_estimate(const std::string& name, const std::string& unit, const std::string& label,
+                          const std::string& meaning, const Value& value) {
+    return {.name = name,
+            .kind = Kind::Measure,
+            .type = Type::Number,
+            .unit = unit,
+            .label = label,
+            .meaning = meaning,
+            .value = [value](const Record& r) { return r.estimate ? number(value(*r.estimate)) : ""; },
+            .used_by = users_of("estimate_error")};
+}
+
+std::vector<Column> columns_of_estimates() {
+    return {column_of_estimate("estimated_bias", "radiance", "estimated bias",
+                               "of component `gathered`: root mean square of what the method says of its bias",
+                               [](const JudgedEstimate& e) { return e.bias; }),
+            column_of_estimate("estimated_deviation", "radiance", "estimated noise",
+                               "likewise of its standard deviation",
+                               [](const JudgedEstimate& e) { return e.deviation; }),
+            column_of_estimate("within_50", "", "pixels within the bound of 50%",
+                               "share of pixels whose true error lies within the bound that half of them should",
+                               [](const JudgedEstimate& e) { return e.within_50; }),
+            column_of_estimate("within_90", "", "pixels within the bound of 90%", "likewise nine tenths",
+                               [](const JudgedEstimate& e) { return e.within_90; })};
 }
 
 std::vector<Column> columns_of_errors() {
@@ -269,6 +298,7 @@ const std::vector<Column>& columns() {
         append(columns_of_times());
         append(columns_of_memory());
         append(columns_of_radii());
+        append(columns_of_estimates());
         append(columns_of_errors());
         return all;
     }();

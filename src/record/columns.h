@@ -24,6 +24,7 @@
 
 #include "core/files/json.h"
 #include "image/metrics.h"
+#include "record/estimated_error.h"
 #include "render/pass_loop.h"
 
 namespace photonlab {
@@ -48,6 +49,7 @@ struct Record {
     std::optional<ErrorMetrics> errors;      ///< empty without a reference for this component
     std::optional<std::uint64_t> nonfinite;  ///< pixels of the component with a non-finite channel
     double peak_rss_mib = 0.0;
+    std::optional<JudgedEstimate> estimate = std::nullopt;  ///< of component "gathered", where it is asked for
 };
 
 struct Column {

@@ -50,7 +50,13 @@ void Recorder::record(const RunState& state, const Image& image) {
             last_total_ = errors;
             nonfinite_count_ += nonfinite;
         }
-        rows += csv_row({identity_, state, component, errors, nonfinite, peak_}) + "\n";
+        Record row{identity_, state, component, errors, nonfinite, peak_};
+        if (component == gathered_layer && image.estimated_error) {
+            const auto truth = reference_ ? reference_pixels(*reference_, component, carried) : std::nullopt;
+            row.estimate = judge_estimate(*image.estimated_error, *image.find(gathered_layer),
+                                          truth ? truth->mean : std::vector<ColorD>{});
+        }
+        rows += csv_row(row) + "\n";
     }
     if (file_) file_->append(rows);
 }

@@ -25,7 +25,8 @@ void require_size(const std::filesystem::path& path, const Image& image, const R
 
 ReferenceSubject subject_of(const Json& json) {
     return {json.at("scene").at("hash").get<std::string>(), json.at("width").get<int>(), json.at("height").get<int>(),
-            json.at("samples_per_pixel").get<int>(), json.at("max_depth").get<int>()};
+            json.at("samples_per_pixel").get<int>(), json.at("max_depth").get<int>(),
+            parse_choice<Positions>("positions", json.value("positions", "grid"))};
 }
 
 /// Names every difference, with both values.
@@ -40,7 +41,10 @@ void require_subject(const std::filesystem::path& folder, const Json& json, cons
     compare("the scene's hash", made.scene_hash, wanted.scene_hash);
     compare("the width", made.width, wanted.width);
     compare("the height", made.height, wanted.height);
-    compare("samples_per_pixel", made.samples_per_pixel, wanted.samples_per_pixel);
+    if (made.positions == Positions::Grid) {
+        compare("samples_per_pixel", made.samples_per_pixel, wanted.samples_per_pixel);
+        compare("positions", name_of(made.positions), name_of(wanted.positions));
+    }
     compare("max_depth", made.max_depth, wanted.max_depth);
     compare("the version of references", json.at("reference_version").get<int>(), reference_version);
     if (!differences.empty())
@@ -55,9 +59,12 @@ std::string key_with_samples(const Json& json) {
 }  // namespace
 
 std::string reference_key(const ReferenceSubject& subject) {
-    return hash_text(fmt::format("reference {} scene {} width {} height {} samples_per_pixel {} max_depth {}",
-                                 reference_version, subject.scene_hash, subject.width, subject.height,
-                                 subject.samples_per_pixel, subject.max_depth));
+    const bool is_grid = subject.positions == Positions::Grid;
+    return hash_text(fmt::format("reference {} scene {} width {} height {} {} max_depth {}", reference_version,
+                                 subject.scene_hash, subject.width, subject.height,
+                                 is_grid ? fmt::format("samples_per_pixel {}", subject.samples_per_pixel)
+                                         : "positions box",
+                                 subject.max_depth));
 }
 
 std::string check_reference(const std::filesystem::path& path, const ReferenceSubject& subject) {
@@ -104,10 +111,10 @@ std::vector<ColorD> component_pixels(const Image& image, std::string_view compon
     return {layer->begin(), layer->end()};
 }
 
-std::optional<ErrorMetrics> judge(const Image& image, const Reference& reference, std::string_view component,
-                                  bool photons_carry_direct) {
+std::optional<ReferencePixels> reference_pixels(const Reference& reference, std::string_view component,
+                                                bool photons_carry_direct) {
     if (photons_carry_direct && component == direct_layer) return std::nullopt;
-    const auto reference_component = [&](const Image& half) {
+    const auto of_half = [&](const Image& half) {
         std::vector<ColorD> pixels = component_pixels(half, component);
         if (photons_carry_direct && component == gathered_layer && !pixels.empty()) {
             std::vector<ColorD> direct = component_pixels(half, direct_layer);
@@ -116,18 +123,25 @@ std::optional<ErrorMetrics> judge(const Image& image, const Reference& reference
         }
         return pixels;
     };
-    const std::vector<ColorD> judged = component_pixels(image, component);
     ReferencePixels pixels;
-    pixels.mean = reference_component(reference.half_a);
-    if (judged.empty() || pixels.mean.empty()) return std::nullopt;
+    pixels.mean = of_half(reference.half_a);
+    if (pixels.mean.empty()) return std::nullopt;
     if (!reference.half_b.layers.empty()) {
         pixels.half_a = pixels.mean;
-        pixels.half_b = reference_component(reference.half_b);
+        pixels.half_b = of_half(reference.half_b);
         for (std::size_t i = 0; i < pixels.mean.size(); ++i)
             pixels.mean[i] = (pixels.half_a[i] + pixels.half_b[i]) * 0.5;
     }
+    return pixels;
+}
+
+std::optional<ErrorMetrics> judge(const Image& image, const Reference& reference, std::string_view component,
+                                  bool photons_carry_direct) {
+    const auto pixels = reference_pixels(reference, component, photons_carry_direct);
+    const std::vector<ColorD> judged = component_pixels(image, component);
+    if (judged.empty() || !pixels) return std::nullopt;
     try {
-        return compare(judged, pixels);
+        return compare(judged, *pixels);
     } catch (const InputError& error) {
         throw InputError(reference.path.string(), error.what());
     }

@@ -13,6 +13,7 @@
 #include "core/files/json.h"
 #include "image/image.h"
 #include "image/metrics.h"
+#include "transport/camera_pass.h"
 
 namespace photonlab {
 
@@ -23,6 +24,7 @@ struct ReferenceSubject {
     int height = 0;
     int samples_per_pixel = 1;
     int max_depth = -1;
+    Positions positions = Positions::Grid;  ///< "box": of the pixels' areas, and then samples_per_pixel is of no account
 };
 
 /// Raised whenever what a reference converges to changes with the program.
@@ -50,7 +52,9 @@ struct Reference {
 inline constexpr std::string_view total_component = "total";
 inline const std::vector<std::string> components{"total", "emission", "direct", "gathered"};
 
-/// Checks that the reference fits, without reading its pixels where that can be told sooner. Returns its key. The
+/// Checks that the reference fits: one of pixel areas judges every method, and shows what a grid of positions misses of
+/// them; one of a grid judges methods on the same grid. It does so
+/// without reading pixels where that can be told sooner. Returns its key. The
 /// InputError says what differs.
 std::string check_reference(const std::filesystem::path& path, const ReferenceSubject& subject);
 
@@ -61,6 +65,10 @@ Reference load_reference(const std::filesystem::path& path, const std::optional<
 
 /// What whoever judges by a reference should be told once: that it is disputed. Empty where it is not.
 std::optional<std::string> warning_about(const Reference& reference);
+
+/// What a component is judged by; empty when the reference does not have it, and as judge() says.
+std::optional<ReferencePixels> reference_pixels(const Reference& reference, std::string_view component,
+                                                bool photons_carry_direct);
 
 /// Errors of one component of an image; empty when the reference does not have it, and for `direct` when photons carry
 /// direct light: `gathered` is then judged against the reference's direct + gathered.

@@ -37,8 +37,12 @@ struct HalfPurposes {
 };
 
 constexpr HalfPurposes half_purposes[] = {
-    {halves[0], {RandomPurpose::ReferenceHalfA, RandomPurpose::ReferencePhotonsA, RandomPurpose::ReferenceDirectA}},
-    {halves[1], {RandomPurpose::ReferenceHalfB, RandomPurpose::ReferencePhotonsB, RandomPurpose::ReferenceDirectB}}};
+    {halves[0],
+     {RandomPurpose::ReferenceHalfA, RandomPurpose::ReferencePhotonsA, RandomPurpose::ReferenceDirectA,
+      RandomPurpose::ReferencePositionsA}},
+    {halves[1],
+     {RandomPurpose::ReferenceHalfB, RandomPurpose::ReferencePhotonsB, RandomPurpose::ReferenceDirectB,
+      RandomPurpose::ReferencePositionsB}}};
 
 /// How the samples are made, in words that tell whether others can be joined to them.
 std::string describe_method(const MethodSettings& method) {
@@ -52,7 +56,10 @@ MethodSettings method_of(const ReferenceSettings& settings) {
         throw InputError(
             fmt::format("integrator: expected path or ppm for a reference, got \"{}\"", settings.integrator));
     MethodSettings method;
+    if (settings.positions == Positions::Box && settings.integrator != "path")
+        throw InputError("positions: box is known to references made by path alone");
     method.integrator = settings.integrator;
+    method.positions = settings.positions;
     method.schedule = ScheduleName::KnausZwicker;
     method.alpha = settings.alpha;
     method.footprints = reference_footprints;
@@ -194,6 +201,7 @@ Image picture_of(const Image& image) {
 std::variant<LightByPhotons, std::string> ask_photons(const Scene& scene, const HitPoints& hit_points,
                                                       const ReferenceSettings& settings, std::uint64_t paths) {
     if (settings.integrator != "path") return "it is made by photons itself";
+    if (settings.positions == Positions::Box) return "its positions are anywhere in the pixels, those of photons would be a grid";
     if (scene.emitters.empty()) return "there is no light";
     if (hit_points.points.empty()) return "there is no surface to gather at in the picture";
     const auto answer = measure_light_by_photons(
@@ -208,7 +216,8 @@ Json check_of(const std::variant<LightByPhotons, std::string>& photons, const Im
 }
 
 ReferenceSubject subject_of(const Scene& scene, const ReferenceSettings& settings) {
-    return {scene.hash, scene.camera.width, scene.camera.height, settings.samples_per_pixel, settings.max_depth};
+    return {scene.hash, scene.camera.width, scene.camera.height, settings.samples_per_pixel, settings.max_depth,
+            settings.positions};
 }
 
 FileLock lock_reference(const std::filesystem::path& folder) {
@@ -231,6 +240,7 @@ Json subject_json(const Scene& scene, const ReferenceSettings& settings) {
             {"width", subject.width},
             {"height", subject.height},
             {"samples_per_pixel", subject.samples_per_pixel},
+            {"positions", name_of(subject.positions)},
             {"max_depth", subject.max_depth},
             {"seed", settings.seed}};
 }
@@ -318,6 +328,7 @@ Json compare_reference_with_photons(const Scene& scene, const ReferenceSettings&
     const Reference reference = load_reference(folder, subject_of(scene, settings));
     ReferenceSettings made = settings;
     made.integrator = json.value("integrator", "path");
+    made.positions = parse_choice<Positions>("positions", json.value("positions", "grid"));
     made.seed = json.value("seed", settings.seed);
     const HitPoints hit_points = trace_hit_points(scene, settings.samples_per_pixel, settings.threads);
     const std::uint64_t samples = json.at("samples_per_half").get<std::uint64_t>();
@@ -364,6 +375,7 @@ Json read_reference_json(const std::filesystem::path& folder) {
         require_whole("samples_per_half", 1, std::numeric_limits<std::int64_t>::max());
         json.at("key").get<std::string>();
         if (json.contains("integrator")) json.at("integrator").get<std::string>();
+        if (json.contains("positions")) parse_choice<Positions>("positions", json.at("positions").get<std::string>());
         if (json.contains("seed") && !json.at("seed").is_number_unsigned())
             throw InputError(file.string(), "seed: expected a whole number of at least 0");
         require_not_negative(json.at("floor_mse").at("total"), "floor_mse: total");

@@ -36,7 +36,8 @@ struct ReferenceSettings {
     std::uint64_t samples = 1024;                ///< to add to each half: paths a sample position (path), passes (ppm)
     std::uint64_t photons_per_pass = 1'000'000;  ///< ppm
     double alpha = 2.0 / 3.0;                    ///< ppm
-    int samples_per_pixel = 1;                   ///< sample positions, a perfect square
+    int samples_per_pixel = 1;                   ///< sample positions, a perfect square; with "box", paths a sample
+    Positions positions = Positions::Grid;       ///< "box": path alone
     int max_depth = -1;
     std::uint64_t seed = 1;  ///< must be the one that is there already, when adding
     int threads = 1;

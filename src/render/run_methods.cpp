@@ -33,22 +33,26 @@ std::vector<RunState> run_methods(const Scene& scene, const HitPoints& hit_point
     const auto tell = [&](std::uint64_t pass, std::size_t method, Needs::Photons gathered) {
         if (loop.needs(method).photons == gathered) on_gather(method, pass, loop.integrator(method));
     };
-    const auto show_images = [&](std::uint64_t pass, const std::vector<std::size_t>& methods) {
-        if (!std::binary_search(settings[0].shown.begin(), settings[0].shown.end(), pass)) return;
+    const auto is_shown = [&](std::uint64_t pass) {
+        return std::binary_search(settings[0].shown.begin(), settings[0].shown.end(), pass);
+    };
+    const auto show_images = [&](const std::vector<std::size_t>& methods, std::uint64_t pass) {
         loop.show(methods, [&](std::size_t method, const Image& image) {
             tell(pass, method, Needs::Photons::OfAllPasses);
             on_image(method, loop.state(method), image);
         });
     };
 
-    show_images(0, methods_at(loop, first_shown, 0));
+    if (is_shown(0)) show_images(methods_at(loop, first_shown, 0), 0);
     for (std::uint64_t pass = 1; pass <= settings[0].passes; ++pass) {
         loop.take(pass);
         const std::vector<std::size_t> methods = methods_at(loop, first_shown, pass);
         for (const std::size_t method : methods) tell(pass, method, Needs::Photons::OfPass);
-        show_images(pass, methods);
+        const bool is_last =
+            !methods.empty() && continuation.is_good_enough && continuation.is_good_enough(pass, loop.image());
+        if (is_last || is_shown(pass)) show_images(methods, pass);
         on_pass(pass, !methods.empty());
-        if (continuation.goes_on && !continuation.goes_on(pass, states)) break;
+        if (is_last || (continuation.goes_on && !continuation.goes_on(pass, states))) break;
     }
 
     std::vector<RunState> last;

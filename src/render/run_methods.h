@@ -25,6 +25,9 @@ struct Continuation {
 
     /// Asked after every pass, with the state of each method by index, to be saved or not; false ends the run there.
     std::function<bool(std::uint64_t pass, const std::vector<StateExchange>& states)> goes_on;
+
+    /// Asked after every pass with the image of the only method: true makes it the last, and shown like it.
+    std::function<bool(std::uint64_t pass, const Image& image)> is_good_enough;
 };
 
 /// Runs one method, or several that can_run_together(). Calls `on_image` for each pass of `shown`, method by method,

@@ -108,7 +108,7 @@ public:
         : camera_(camera),
           positions_(points.positions),
           positions_grid_(grid_size(samples_per_pixel)),
-          paths_grid_(grid_size(points.paths_per_pixel)),
+          paths_grid_(points.all_cells ? positions_grid_ : 1),
           pass_(pass) {}
 
     double share() const { return positions_ == Positions::Grid ? 1.0 : 1.0 / (paths_grid_ * paths_grid_); }

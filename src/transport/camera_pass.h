@@ -68,7 +68,7 @@ constexpr const auto& choice_names(Branches) {
 struct NewPoints {
     Positions positions = Positions::Grid;
     Branches branches = Branches::All;
-    int paths_per_pixel = 1;  ///< in a pass; a perfect square
+    bool all_cells = false;  ///< with "box": a path in each cell of the grid of sample positions, not one a pixel
     bool operator==(const NewPoints&) const = default;
 };
 
@@ -94,8 +94,8 @@ HitPoints trace_hit_points(const Scene& scene, const Camera& camera, int samples
                            double branch_cutoff);
 
 /// The camera paths of one pass, other ones in every pass. With positions "grid" a path a pixel begins at one of its
-/// `samples_per_pixel` positions, each of them once in as many passes; with "box" `paths_per_pixel` begin anywhere in
-/// it, one in each cell of a grid. Each has the same share of its pixel.
+/// `samples_per_pixel` positions, each of them once in as many passes; with "box" it begins anywhere in
+/// it, or one begins in each cell of the grid. Each has the same share of its pixel.
 HitPoints trace_new_hit_points(const Scene& scene, int samples_per_pixel, const NewPoints& points,
                                const PassOfStream& pass, int threads, double branch_cutoff = default_branch_cutoff);
 

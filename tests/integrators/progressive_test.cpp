@@ -29,7 +29,8 @@ MethodSettings progressive(ScheduleName schedule, double alpha) {
 
 FluxSum gather_at_first(const Scene& scene, const HitPoints& hit_points, const PhotonPass& pass, double radius) {
     return gather_within(PhotonMap(pass.photons), scene, hit_points.points, SearchOrder(hit_points.points), {0, 1}, {},
-                         [&](std::size_t) { return GatherReach{radius}; })[0].sum;
+                         [&](std::size_t) { return GatherReach{radius}; })[0]
+        .sum;
 }
 
 // Hachisuka, Ogaki & Jensen 2008: tau <- (tau + phi) rho, R^2 <- R^2 rho, L = tau / (pi R^2 N_emitted). A pass may be

@@ -26,8 +26,9 @@ Curvature curvature_of_pass(const Scene& scene, const HitPoints& points, const M
                             double bandwidth, std::uint64_t seed) {
     const PhotonPass pass = trace_photons(scene, photon_settings(method, seed), 1, 1);
     const auto found = gather_within<PhotonMoments<true, false>>(
-        PhotonMap(pass.photons), scene, points.points, SearchOrder(points.points), {0, 1}, method,
-        [&](std::size_t) { return GatherReach{radius / scene.unit_length, bandwidth / scene.unit_length}; });
+        PhotonMap(pass.photons), scene, points.points, SearchOrder(points.points), {0, 1}, method, [&](std::size_t) {
+            return GatherReach{radius / scene.unit_length, bandwidth / scene.unit_length};
+        });
     return found[0].moments.of_pass(found[0].sum.factor(), static_cast<double>(pass.paths_emitted), 1.0).curvature;
 }
 
@@ -49,7 +50,8 @@ TEST(Curvature, BelowAPointLightIsWhatIsPredicted) {
             const Curvature at = curvature_of_pass(scene, points, method, radius, bandwidth, seed);
             // From shares of the total power, in the unit box, to radiance per squared scene unit.
             laplacian.push_back(at.laplacian.x * scene.total_power / (length * length));
-            squared_laplacian.push_back(at.squared_laplacian / 3.0 * std::pow(scene.total_power / (length * length), 2.0));
+            squared_laplacian.push_back(at.squared_laplacian / 3.0 *
+                                        std::pow(scene.total_power / (length * length), 2.0));
             squared_estimate.push_back(at.squared_estimate / 3.0 * scene.total_power * scene.total_power);
         }
         const double q = std::sqrt(1.0 + bandwidth * bandwidth / (height * height));
@@ -80,9 +82,8 @@ double squared_error(const Scene& scene, const HitPoints& points, const MethodSe
     const double truth = albedo / pi / (height * height);
     double sum = 0.0;
     for (std::uint64_t seed = 1; seed <= runs; ++seed) {
-        const double value = mean_of(render(scene, points, method, {.passes = passes, .seed = seed}).image,
-                                     gathered_layer)
-                                 .x;
+        const double value =
+            mean_of(render(scene, points, method, {.passes = passes, .seed = seed}).image, gathered_layer).x;
         sum += (value - truth) * (value - truth) / static_cast<double>(runs);
     }
     return sum;

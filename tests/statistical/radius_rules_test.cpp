@@ -1,5 +1,5 @@
-// Every radius rule, with fixed and with new hit points, on light that no blurring changes: the expectation of the image
-// is exact after any number of passes, with so few photons that most passes of a point are empty (docs/theory.md,
+// Every radius rule, with fixed and with new hit points, on light that no blurring changes: the expectation of the
+// image is exact after any number of passes, with so few photons that most passes of a point are empty (docs/theory.md,
 // section 9). Photons are placed by hand on a floor; what gathers them is the program's own loop.
 
 #include <gtest/gtest.h>
@@ -11,10 +11,10 @@
 namespace photonlab::test {
 namespace {
 
-constexpr double disc_radius = 0.5;   // initial, scene units
-constexpr double half_patch = 12.0;   // photons lie in |x|, |z| < this
+constexpr double disc_radius = 0.5;  // initial, scene units
+constexpr double half_patch = 12.0;  // photons lie in |x|, |z| < this
 constexpr float reflectance = 0.6f;
-constexpr int resolution = 8;         // pixels, about two radii apart
+constexpr int resolution = 8;  // pixels, about two radii apart
 
 /// A floor of 60 x 60 seen from straight above: 8 x 8 pixels over |x|, |z| < 8.
 Scene floor_from_above() {
@@ -111,9 +111,8 @@ void expect_unbiased(const NamedMethod& method, const Density& density, ClaimFam
         for (std::uint64_t pass = 1; pass <= shown.back(); ++pass) {
             loop.take(pass, place_photons(scene, density, photons, seed, pass));
             const HitPoints points =
-                needs.new_points
-                    ? trace_new_hit_points(scene, 1, *needs.new_points, {.seed = seed, .pass = pass}, 1)
-                    : grid;
+                needs.new_points ? trace_new_hit_points(scene, 1, *needs.new_points, {.seed = seed, .pass = pass}, 1)
+                                 : grid;
             for (const HitPoint point : points.points) {
                 const double x = (VectorD(point.position) * scene.unit_length + scene.centre).x;
                 lit += density.at(x) / static_cast<double>(points.points.size());

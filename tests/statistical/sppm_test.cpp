@@ -94,8 +94,8 @@ TEST(StochasticProgressive, LooksAtTheRegion) {
     }
 }
 
-// Radii that do not depend on photons: the expected mean after 6 passes is a quadrature over the region of the mean over
-// passes of the blurred irradiance, 0.2390122 for r_1 = 0.5 and alpha 2/3; without blur it is 0.2329921.
+// Radii that do not depend on photons: the expected mean after 6 passes is a quadrature over the region of the mean
+// over passes of the blurred irradiance, 0.2390122 for r_1 = 0.5 and alpha 2/3; without blur it is 0.2329921.
 TEST(StochasticProgressive, ConvergesToTheMeanOverARegionOfTheBlurredLight) {
     const Scene scene = floor_region(Color(0.5f));
     const MethodSettings method{.integrator = "sppm",
@@ -132,10 +132,10 @@ TEST(StochasticProgressive, OnTheGridAgreesWithProgressivePhotonMappingOfAllPosi
                 mean_of(render(scene, grid, method, {.passes = 16, .seed = seed, .samples_per_pixel = 16}).image, layer)
                     .x);
             method.integrator = "sppm";
-            one.push_back(mean_of(render(scene, grid, method, {.passes = 16, .seed = 100 + seed, .samples_per_pixel = 16})
-                                      .image,
-                                  layer)
-                              .x);
+            one.push_back(
+                mean_of(render(scene, grid, method, {.passes = 16, .seed = 100 + seed, .samples_per_pixel = 16}).image,
+                        layer)
+                    .x);
         }
         claims.means_agree(std::string(layer), one, all, 0.02);
     }
@@ -148,8 +148,9 @@ TEST(NewHitPoints, TakeEveryPositionOfTheGridOnceInACycle) {
         for (const std::uint64_t cycle : {0u, 3u}) {
             std::vector<int> met(grid.points.size(), 0);
             for (std::uint64_t place = 1; place <= static_cast<std::uint64_t>(positions); ++place) {
-                const HitPoints points = trace_new_hit_points(
-                    scene, positions, {}, {.seed = 9, .pass = cycle * static_cast<std::uint64_t>(positions) + place}, 1);
+                const HitPoints points =
+                    trace_new_hit_points(scene, positions, {},
+                                         {.seed = 9, .pass = cycle * static_cast<std::uint64_t>(positions) + place}, 1);
                 for (const HitPoint point : points.points)
                     for (std::size_t i = 0; i < grid.points.size(); ++i)
                         met[i] += grid.points[i].pixel == point.pixel && grid.points[i].position == point.position;
@@ -205,9 +206,9 @@ TEST(StochasticProgressive, OfOneBranchHasTheMeanOfAll) {
         for (std::uint64_t seed = 1; seed <= 60; ++seed) {
             method.branches = branches;
             means[branches == Branches::One].push_back(
-                mean_total(render(scene, grid, method,
-                                  {.passes = 16, .seed = seed + (branches == Branches::One ? 500 : 0)})
-                               .image)
+                mean_total(
+                    render(scene, grid, method, {.passes = 16, .seed = seed + (branches == Branches::One ? 500 : 0)})
+                        .image)
                     .x);
         }
     ClaimFamily claims;
