@@ -8,16 +8,16 @@ import sys
 import warnings
 from pathlib import Path
 
-from analysis.figures import (best_alpha, bias_variance, convergence, equal_time, extremes, gallery, grid, memory, probes, scaling,
-                              strip, time_to_error, tradeoff)
+from analysis.figures import (best_alpha, bias_variance, calibration, convergence, equal_time, extremes, gallery, grid, memory,
+                              methods, probes, scaling, strip, time_to_error, tradeoff)
 from analysis.records.files import InputError, reason
 from analysis.report import page
 from analysis.statistics import decomposition, fits
 
 # In this order all are made of a folder: a command reads what those before it wrote.
 COMMANDS = [convergence.COMMAND, strip.COMMAND, gallery.COMMAND, decomposition.COMMAND, fits.COMMAND, bias_variance.COMMAND,
-            memory.COMMAND, best_alpha.COMMAND, grid.COMMAND, equal_time.COMMAND, time_to_error.COMMAND, tradeoff.COMMAND,
-            probes.COMMAND, scaling.COMMAND, extremes.COMMAND, page.COMMAND]
+            memory.COMMAND, best_alpha.COMMAND, methods.COMMAND, calibration.COMMAND, grid.COMMAND, equal_time.COMMAND,
+            time_to_error.COMMAND, tradeoff.COMMAND, probes.COMMAND, scaling.COMMAND, extremes.COMMAND, page.COMMAND]
 
 
 def main(arguments):

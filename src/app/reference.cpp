@@ -96,13 +96,12 @@ void add_reference_command(CLI::App& app) {
     command->add_option("--resolution", options->resolution, "WIDTHxHEIGHT in place of the scene file's");
     command->add_option("--samples-per-pixel", settings.samples_per_pixel,
                         fmt::format("sample positions, a perfect square [{}]", settings.samples_per_pixel));
-    command
-        ->add_option_function<std::string>(
-            "--positions",
-            [options](const std::string& name) {
-                options->settings.positions = parse_choice<Positions>("--positions", name);
-            },
-            "grid: of the sample positions; box: of the pixels' areas, with a lens of all of it [grid]");
+    command->add_option_function<std::string>(
+        "--positions",
+        [options](const std::string& name) {
+            options->settings.positions = parse_choice<Positions>("--positions", name);
+        },
+        "grid: of the sample positions; box: of the pixels' areas, with a lens of all of it [grid]");
     command->add_option("--max-depth", options->max_depth,
                         "edges from camera to light, -1 is unlimited [the scene file's]");
     command->add_option("--seed", settings.seed, fmt::format("of all random numbers [{}]", settings.seed))

@@ -245,15 +245,14 @@ FinishedRunState make_run(const RenderOptions& options, const RunGroup& group) {
         print_message("photonlab: {} is not there: beginning at pass 1\n", options.checkpoint);
     listen_for_interruptions();
     Progress progress(options.passes);
-    const GroupOutcome outcome =
-        run_group(group,
-                  {.seconds_between_saves = options.checkpoint_seconds,
-                   .is_interrupted = is_interrupted,
-                   .is_good_enough = good_enough(options)},
-                  [&](std::uint64_t pass, bool is_new) {
-                      if (!is_new) progress.skip(pass);
-                      progress.show(pass, fmt::format("pass {} of {}", pass, options.passes));
-                  });
+    const GroupOutcome outcome = run_group(group,
+                                           {.seconds_between_saves = options.checkpoint_seconds,
+                                            .is_interrupted = is_interrupted,
+                                            .is_good_enough = good_enough(options)},
+                                           [&](std::uint64_t pass, bool is_new) {
+                                               if (!is_new) progress.skip(pass);
+                                               progress.show(pass, fmt::format("pass {} of {}", pass, options.passes));
+                                           });
     progress.clear();
     if (!outcome.is_finished)
         throw Interrupted(fmt::format("interrupted after pass {} of {}; {}", outcome.passes, options.passes,
@@ -276,8 +275,8 @@ void print_written(const RenderOptions& options, const std::vector<std::uint64_t
 void render(const RenderOptions& options) {
     require_consistent(options);
     const ChosenSettings chosen = options.method.settings();
-    if (options.stop_at && (!uses_setting(chosen.values, "estimate_error") ||
-                            chosen.values.estimate_error == ErrorEstimation::Off))
+    if (options.stop_at &&
+        (!uses_setting(chosen.values, "estimate_error") || chosen.values.estimate_error == ErrorEstimation::Off))
         throw InputError("--stop-at: expected --estimate-error on, and a method that has it");
     check_options([&] { require_perfect_square(options.samples_per_pixel); });
     const std::vector<std::uint64_t> snapshots = snapshots_of(options);
@@ -292,8 +291,8 @@ void render(const RenderOptions& options) {
     check_options([&] { require_resolvable(prepared.settings.method, scene); });
     std::optional<Reference> reference;
     if (!options.reference.empty())
-        reference = load_reference(options.reference,
-                                   subject_of(scene, options.samples_per_pixel, prepared.settings.method));
+        reference =
+            load_reference(options.reference, subject_of(scene, options.samples_per_pixel, prepared.settings.method));
     require_room_for(options, snapshots, scene);
 
     const MemoryEstimate memory = MemoryEstimator(scene, options.samples_per_pixel).of({prepared.settings}, 0);

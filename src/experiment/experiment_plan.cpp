@@ -102,12 +102,9 @@ RunSettings settings_of(const Experiment& experiment, const ExperimentRun& run, 
 }
 
 ReferenceSubject subject_of(const Scene& scene, int samples_per_pixel, const MethodSettings& method) {
-    return {scene.hash,
-            scene.camera.width,
-            scene.camera.height,
-            samples_per_pixel,
-            method.max_depth,
-            uses_setting(method, "positions") ? method.positions : Positions::Grid};
+    return {scene.hash,          scene.camera.width,
+            scene.camera.height, samples_per_pixel,
+            method.max_depth,    uses_setting(method, "positions") ? method.positions : Positions::Grid};
 }
 
 namespace {
@@ -214,7 +211,7 @@ private:
     const Check check_;
     PreparedExperiment prepared_;
     std::map<std::tuple<std::size_t, int, Positions>, std::string> reference_keys_;  // by scene, depth and positions
-    std::map<std::string, Point> points_;                                // by name
+    std::map<std::string, Point> points_;                                            // by name
 };
 
 }  // namespace

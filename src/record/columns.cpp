@@ -192,7 +192,8 @@ std::vector<Column> columns_of_times() {
             "direct",
             "of `seconds`: direct light. While one thread indexes photons, the others sample it; what passes meanwhile "
             "is divided between build and direct in proportion to the CPU time of each"),
-        column_of_stage<Stage::Points>("points", "of `seconds`: new hit points, where a method makes them in every pass"),
+        column_of_stage<Stage::Points>("points",
+                                       "of `seconds`: new hit points, where a method makes them in every pass"),
     };
 }
 
@@ -234,17 +235,17 @@ Column column_of_estimate(const std::string& name, const std::string& unit, cons
 }
 
 std::vector<Column> columns_of_estimates() {
-    return {column_of_estimate("estimated_bias", "radiance", "estimated bias",
-                               "of component `gathered`: root mean square of what the method says of its bias",
-                               [](const JudgedEstimate& e) { return e.bias; }),
-            column_of_estimate("estimated_deviation", "radiance", "estimated noise",
-                               "likewise of its standard deviation",
-                               [](const JudgedEstimate& e) { return e.deviation; }),
-            column_of_estimate("within_50", "", "pixels within the bound of 50%",
-                               "share of pixels whose true error lies within the bound that half of them should",
-                               [](const JudgedEstimate& e) { return e.within_50; }),
-            column_of_estimate("within_90", "", "pixels within the bound of 90%", "likewise nine tenths",
-                               [](const JudgedEstimate& e) { return e.within_90; })};
+    return {
+        column_of_estimate("estimated_bias", "radiance", "estimated bias",
+                           "of component `gathered`: root mean square of what the method says of its bias",
+                           [](const JudgedEstimate& e) { return e.bias; }),
+        column_of_estimate("estimated_deviation", "radiance", "estimated noise", "likewise of its standard deviation",
+                           [](const JudgedEstimate& e) { return e.deviation; }),
+        column_of_estimate("within_50", "", "pixels within the bound of 50%",
+                           "share of pixels whose true error lies within the bound that half of them should",
+                           [](const JudgedEstimate& e) { return e.within_50; }),
+        column_of_estimate("within_90", "", "pixels within the bound of 90%", "likewise nine tenths",
+                           [](const JudgedEstimate& e) { return e.within_90; })};
 }
 
 std::vector<Column> columns_of_errors() {

@@ -1,5 +1,5 @@
-// What a method says of its own error (integrators/error_estimate.h), in few numbers: how large it says it is, how often
-// it is right where a reference knows, and whether it is small enough to stop.
+// What a method says of its own error (integrators/error_estimate.h), in few numbers: how large it says it is, how
+// often it is right where a reference knows, and whether it is small enough to stop.
 //
 // With bias B, deviation sigma and nu = passes - 1 degrees of freedom, image - truth is claimed to lie within B +- t
 // sigma in a share q of the pixels, t being Student's quantile of (1 + q) / 2. After Hachisuka, Jarosz & Jensen 2010.
@@ -16,8 +16,8 @@ namespace photonlab {
 
 /// Over the pixels whose noise is known: those that photons ever reached, from the second pass on.
 struct JudgedEstimate {
-    double bias = 0.0;       ///< root mean square
-    double deviation = 0.0;  ///< likewise
+    double bias = 0.0;                               ///< root mean square
+    double deviation = 0.0;                          ///< likewise
     std::optional<double> within_50 = std::nullopt;  ///< share of pixels whose true error is within the bound of 50%;
                                                      ///< empty without a reference
     std::optional<double> within_90 = std::nullopt;

@@ -24,8 +24,11 @@ void require_size(const std::filesystem::path& path, const Image& image, const R
 }
 
 ReferenceSubject subject_of(const Json& json) {
-    return {json.at("scene").at("hash").get<std::string>(), json.at("width").get<int>(), json.at("height").get<int>(),
-            json.at("samples_per_pixel").get<int>(), json.at("max_depth").get<int>(),
+    return {json.at("scene").at("hash").get<std::string>(),
+            json.at("width").get<int>(),
+            json.at("height").get<int>(),
+            json.at("samples_per_pixel").get<int>(),
+            json.at("max_depth").get<int>(),
             parse_choice<Positions>("positions", json.value("positions", "grid"))};
 }
 
@@ -60,11 +63,10 @@ std::string key_with_samples(const Json& json) {
 
 std::string reference_key(const ReferenceSubject& subject) {
     const bool is_grid = subject.positions == Positions::Grid;
-    return hash_text(fmt::format("reference {} scene {} width {} height {} {} max_depth {}", reference_version,
-                                 subject.scene_hash, subject.width, subject.height,
-                                 is_grid ? fmt::format("samples_per_pixel {}", subject.samples_per_pixel)
-                                         : "positions box",
-                                 subject.max_depth));
+    return hash_text(fmt::format(
+        "reference {} scene {} width {} height {} {} max_depth {}", reference_version, subject.scene_hash,
+        subject.width, subject.height,
+        is_grid ? fmt::format("samples_per_pixel {}", subject.samples_per_pixel) : "positions box", subject.max_depth));
 }
 
 std::string check_reference(const std::filesystem::path& path, const ReferenceSubject& subject) {

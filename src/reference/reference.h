@@ -24,7 +24,8 @@ struct ReferenceSubject {
     int height = 0;
     int samples_per_pixel = 1;
     int max_depth = -1;
-    Positions positions = Positions::Grid;  ///< "box": of the pixels' areas, and then samples_per_pixel is of no account
+    Positions positions =
+        Positions::Grid;  ///< "box": of the pixels' areas, and then samples_per_pixel is of no account
 };
 
 /// Raised whenever what a reference converges to changes with the program.

@@ -36,13 +36,12 @@ struct HalfPurposes {
     LoopPurposes purposes;
 };
 
-constexpr HalfPurposes half_purposes[] = {
-    {halves[0],
-     {RandomPurpose::ReferenceHalfA, RandomPurpose::ReferencePhotonsA, RandomPurpose::ReferenceDirectA,
-      RandomPurpose::ReferencePositionsA}},
-    {halves[1],
-     {RandomPurpose::ReferenceHalfB, RandomPurpose::ReferencePhotonsB, RandomPurpose::ReferenceDirectB,
-      RandomPurpose::ReferencePositionsB}}};
+constexpr HalfPurposes half_purposes[] = {{halves[0],
+                                           {RandomPurpose::ReferenceHalfA, RandomPurpose::ReferencePhotonsA,
+                                            RandomPurpose::ReferenceDirectA, RandomPurpose::ReferencePositionsA}},
+                                          {halves[1],
+                                           {RandomPurpose::ReferenceHalfB, RandomPurpose::ReferencePhotonsB,
+                                            RandomPurpose::ReferenceDirectB, RandomPurpose::ReferencePositionsB}}};
 
 /// How the samples are made, in words that tell whether others can be joined to them.
 std::string describe_method(const MethodSettings& method) {
@@ -201,7 +200,8 @@ Image picture_of(const Image& image) {
 std::variant<LightByPhotons, std::string> ask_photons(const Scene& scene, const HitPoints& hit_points,
                                                       const ReferenceSettings& settings, std::uint64_t paths) {
     if (settings.integrator != "path") return "it is made by photons itself";
-    if (settings.positions == Positions::Box) return "its positions are anywhere in the pixels, those of photons would be a grid";
+    if (settings.positions == Positions::Box)
+        return "its positions are anywhere in the pixels, those of photons would be a grid";
     if (scene.emitters.empty()) return "there is no light";
     if (hit_points.points.empty()) return "there is no surface to gather at in the picture";
     const auto answer = measure_light_by_photons(
@@ -216,8 +216,8 @@ Json check_of(const std::variant<LightByPhotons, std::string>& photons, const Im
 }
 
 ReferenceSubject subject_of(const Scene& scene, const ReferenceSettings& settings) {
-    return {scene.hash, scene.camera.width, scene.camera.height, settings.samples_per_pixel, settings.max_depth,
-            settings.positions};
+    return {scene.hash,         scene.camera.width, scene.camera.height, settings.samples_per_pixel,
+            settings.max_depth, settings.positions};
 }
 
 FileLock lock_reference(const std::filesystem::path& folder) {

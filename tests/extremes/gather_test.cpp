@@ -39,7 +39,8 @@ ColorD radiance_times_power(const MethodSettings& method, std::vector<Photon> ph
     const Scene scene = build_scene(floor_description());
     const HitPoints hit_points = trace_hit_points(scene, 1, 1);
     EXPECT_EQ(hit_points.points.size(), 1u);
-    EXPECT_EQ(hit_points.points[0].position, Vector(0.0f));
+    // To what Embree's reciprocals, which differ between makers of processors, round to.
+    EXPECT_LT(hit_points.points[0].position.length(), 1e-7f);
     PassLoop run = loop_of(method, scene, hit_points);
     PhotonPass pass;
     pass.photons = std::move(photons);

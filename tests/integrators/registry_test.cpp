@@ -24,7 +24,7 @@ TEST(Registry, RefusesValuesOutOfRangeAndSaysWhatItExpects) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double too_large = std::numeric_limits<double>::infinity();
     EXPECT_EQ(refusal({}), "");
-    EXPECT_NE(refusal({.integrator = "pppm"}).find("did you mean \"ppm\"? Known here: photonmapper, ppm, path"),
+    EXPECT_NE(refusal({.integrator = "pppm"}).find("did you mean \"ppm\"? Known here: photonmapper, ppm, sppm, path"),
               std::string::npos);
     for (const double alpha : {0.0, -0.5, 1.0001, nan})
         EXPECT_NE(refusal({.alpha = alpha}).find("alpha"), std::string::npos);

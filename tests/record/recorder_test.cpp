@@ -35,14 +35,17 @@ std::string cell(const Record& record, const std::string& column) {
 TEST(Records, ColumnsAreThoseOfTheContract) {
     EXPECT_EQ(
         csv_header(),
-        "schema,experiment,run,scene,integrator,mode,schedule,alpha,k,radius_rule,radius_initial,footprints,max_radius,"
+        "schema,experiment,run,scene,integrator,mode,schedule,alpha,kappa,smallest_radius,largest_radius,"
+        "laplacian_radius,test_variant,start,test_photons,test_shrink,test_growth,positions,branches,estimate_error,"
+        "k,radius_rule,radius_initial,footprints,max_radius,"
         "caustic_k,"
         "caustic_radius,caustic_max_radius,kernel,eps,"
         "direct,direct_samples,max_depth,branch_cutoff,photons_per_pass,width,height,samples_per_pixel,hit_points,seed,"
         "threads,"
         "pass,component,"
         "paths_emitted,photons_stored,photons_gathered,seconds,cpu_seconds,seconds_trace,seconds_build,seconds_gather,"
-        "seconds_direct,map_bytes,hit_point_bytes,peak_rss_mib,radius_min,radius_mean,radius_max,"
+        "seconds_direct,seconds_points,map_bytes,hit_point_bytes,peak_rss_mib,radius_min,radius_mean,radius_max,"
+        "estimated_bias,estimated_deviation,within_50,within_90,"
         "mse,mse_unbiased,rmse,relmse,smape,bias,max_error,reference_floor,nonfinite");
 }
 
@@ -119,7 +122,7 @@ TEST(Columns, AreDescribedBesideTheRecords) {
     EXPECT_EQ(names, csv_header());
     EXPECT_EQ(by_name["alpha"]["kind"], "setting");
     EXPECT_EQ(by_name["alpha"]["label"], "α");
-    EXPECT_EQ(by_name["alpha"]["used_by"], Json::array({"ppm"}));
+    EXPECT_EQ(by_name["alpha"]["used_by"], Json::array({"ppm", "sppm"}));
     EXPECT_EQ(by_name["integrator"]["values"][0], Json::array({"photonmapper", "PM"}));
     EXPECT_EQ(by_name["seconds"]["kind"], "time");
     EXPECT_EQ(by_name["seed"]["kind"], "identity");

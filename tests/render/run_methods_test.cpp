@@ -108,7 +108,7 @@ TEST_F(Runner, MethodsThatShareTheirPhotonsGiveTheBitsThatTheyGiveAlone) {
         method.radius = 0.3;
         together.push_back({method, 3, 6, 1, {0, 2, 6}});
     }
-    ASSERT_EQ(together.size(), 6u);
+    ASSERT_EQ(together.size(), 8u);
     std::vector<Image> images(together.size());
     const std::vector<RunState> states =
         run_methods(scene_, hit_points_, together,

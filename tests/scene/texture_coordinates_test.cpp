@@ -203,25 +203,29 @@ TEST_F(TextureCoordinatesTest, FindTheCornerOfTheImage) {
         return color_at(*scene.materials[scene.shapes[hit.shape].material].textures.at(0).texture,
                         hit.texture_coordinate);
     };
+    // To what OpenImageIO's curves round to, which differs between makers of processors.
+    const auto expect_colour = [](const Color& found, const Color& expected) {
+        EXPECT_LT((found - expected).length(), 1e-6f) << found;
+    };
     const Color red(1, 0, 0), green(0, 1, 0), blue(0, 0, 1), all(1, 1, 1);
     for (const std::string version : {"0.6.0", "3.0.0"}) {
         const Scene rectangle = textured("rectangle", "", version);
         const auto on_rectangle = [&](double x, double y) {
             return colour_at(rectangle, hit_from(rectangle, {x, y, 1}, {x, y, 0}));
         };
-        EXPECT_EQ(on_rectangle(-0.5, -0.5), red);
-        EXPECT_EQ(on_rectangle(0.5, -0.5), green);
-        EXPECT_EQ(on_rectangle(-0.5, 0.5), blue);
-        EXPECT_EQ(on_rectangle(0.5, 0.5), all);
+        expect_colour(on_rectangle(-0.5, -0.5), red);
+        expect_colour(on_rectangle(0.5, -0.5), green);
+        expect_colour(on_rectangle(-0.5, 0.5), blue);
+        expect_colour(on_rectangle(0.5, 0.5), all);
 
         write("quad.obj",
               "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n");
         const std::string file = "<string name='filename' value='quad.obj'/>";
         const Scene mesh = textured("obj", file, version);
-        EXPECT_EQ(colour_at(mesh, hit_from(mesh, {-0.5, 0.5, 1}, {-0.5, 0.5, 0})), red);
-        EXPECT_EQ(colour_at(mesh, hit_from(mesh, {0.5, -0.5, 1}, {0.5, -0.5, 0})), all);
+        expect_colour(colour_at(mesh, hit_from(mesh, {-0.5, 0.5, 1}, {-0.5, 0.5, 0})), red);
+        expect_colour(colour_at(mesh, hit_from(mesh, {0.5, -0.5, 1}, {0.5, -0.5, 0})), all);
         const Scene kept = textured("obj", file + "<boolean name='flip_tex_coords' value='false'/>", version);
-        EXPECT_EQ(colour_at(kept, hit_from(kept, {-0.5, -0.5, 1}, {-0.5, -0.5, 0})), red);
+        expect_colour(colour_at(kept, hit_from(kept, {-0.5, -0.5, 1}, {-0.5, -0.5, 0})), red);
 
         const Scene sphere = textured("sphere", "", version);
         const auto on_sphere_at = [&](double u, double v) {
