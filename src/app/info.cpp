@@ -30,6 +30,7 @@ namespace {
 struct InfoOptions {
     std::filesystem::path scene;
     std::string resolution;
+    SceneParameters parameters;
 };
 
 void print_shapes(const Scene& scene) {
@@ -53,6 +54,48 @@ void print_materials(const Scene& scene) {
     }
     print_output("materials   {}\n", scene.materials.size());
     for (const auto& [kind, count] : kinds) print_output("            {} {}\n", count, kind);
+}
+
+/// What methods do where light meets a material.
+std::string treatment_of(const Material& material) {
+    const bool branches = may_be_specular(material);
+    if (!may_scatter(material)) return "followed into every single direction; nothing is gathered there";
+    const char* gathered = may_scatter_through(material) ? "gathered at, from both sides" : "gathered at";
+    return branches ? fmt::format("{}, and followed into every single direction", gathered) : gathered;
+}
+
+/// How many shapes are treated in each way. `path` begins where the others gather, and goes on from there by chance.
+void print_treatments(const Scene& scene) {
+    std::map<std::string, std::size_t> shapes;
+    for (const Shape& shape : scene.shapes) {
+        const Material& material = scene.materials[shape.material];
+        ++shapes[is_black(material.bsdf) && !material.back ? "black: paths end there" : treatment_of(material)];
+    }
+    print_output("methods     of {} shapes\n", scene.shapes.size());
+    for (const auto& [treatment, count] : shapes) print_output("            {} {}\n", count, treatment);
+}
+
+/// Lights that a path from the camera cannot find by a mirror or through glass, or will hardly.
+void print_hidden_lights(const Scene& scene) {
+    constexpr double hardly = 1e-4;  // of all directions, as seen from across the scene
+    if (!has_specular_surfaces(scene)) return;
+    std::size_t without_size = 0, small = 0;
+    const double around = 4.0 * pi * scene.bounding_radius * scene.bounding_radius;
+    for (const Emitter& emitter : scene.emitters) {
+        if (!is_met_by_rays(emitter)) ++without_size;
+        if (const auto* light = std::get_if<AreaLight>(&emitter.kind))
+            small += scene.shapes[light->shape].area < hardly * around;
+    }
+    if (without_size > 0)
+        print_output(
+            "warning     {} lights have no size: no path from the camera finds them by a mirror or through "
+            "glass, so path refuses the scene, where ppm and photonmapper render their caustics\n",
+            without_size);
+    if (small > 0)
+        print_output(
+            "warning     {} lights are less than {:g} of what is seen from across the scene: path will hardly "
+            "find them by a mirror or through glass, and be noisy in their caustics\n",
+            small, hardly);
 }
 
 void print_emitters(const Scene& scene) {
@@ -89,7 +132,7 @@ void info(const InfoOptions& options) {
     std::optional<Resolution> resolution;
     if (!options.resolution.empty()) resolution = parse_resolution(options.resolution);
     const int threads = start_threads_up_to(hardware_threads());
-    const Scene scene = build_scene(load_scene_file(options.scene), resolution);
+    const Scene scene = build_scene(load_scene_file(options.scene, options.parameters.values()), resolution);
     const Camera& camera = scene.camera;
     const VectorD position = VectorD(camera.position) * scene.unit_length + scene.centre;
 
@@ -97,6 +140,7 @@ void info(const InfoOptions& options) {
     print_output("hash        {}\n", scene.hash);
     print_shapes(scene);
     print_materials(scene);
+    print_treatments(scene);
     print_emitters(scene);
     print_output("camera      at {:.6g} {:.6g} {:.6g}, {}x{} pixels, {:.4g} degrees wide\n", position.x, position.y,
                  position.z, camera.width, camera.height, 2.0 * std::atan(camera.right.length() / 2.0) * 180.0 / pi);
@@ -116,6 +160,7 @@ void info(const InfoOptions& options) {
     for (const std::string& what : what_is_left_out(scene, hit_points)) print_output("left out    {}\n", what);
     for (const std::string& note : scene.notes) print_output("note        {}\n", note);
     print_narrow_gaps(scene);
+    print_hidden_lights(scene);
     for (const std::string& reason : why_images_are_plain(scene, hit_points)) print_output("warning     {}\n", reason);
 }
 
@@ -125,6 +170,7 @@ void add_info_command(CLI::App& app) {
     auto options = std::make_shared<InfoOptions>();
     CLI::App* command = app.add_subcommand("info", "Say what a scene holds and requires");
     command->add_option("SCENE", options->scene, "scene file (Mitsuba XML)")->required();
+    options->parameters.add_to(*command);
     command->add_option("--resolution", options->resolution, "WIDTHxHEIGHT in place of the scene file's");
     command->footer("Example:\n  photonlab info scenes/cornell-box/scene.xml");
     command->callback([options] { info(*options); });

@@ -29,6 +29,24 @@ Resolution parse_resolution(const std::string& text) {
     throw InputError(fmt::format("--resolution: expected WIDTHxHEIGHT in pixels, such as 640x480, got \"{}\"", text));
 }
 
+void SceneParameters::add_to(CLI::App& command) {
+    command.add_option("-D", texts_, "NAME=VALUE in place of the scene file's <default>; may be given more than once")
+        ->allow_extra_args(false);
+}
+
+std::map<std::string, std::string> SceneParameters::values() const {
+    std::map<std::string, std::string> values;
+    for (const std::string& text : texts_) {
+        const std::size_t equals = text.find('=');
+        if (equals == std::string::npos || equals == 0)
+            throw InputError(fmt::format("-D: expected NAME=VALUE, got \"{}\"", text));
+        const std::string name = text.substr(0, equals);
+        if (!values.emplace(name, text.substr(equals + 1)).second)
+            throw InputError(fmt::format("-D: {} is given twice", name));
+    }
+    return values;
+}
+
 std::string require_whole_number(const std::string& text) {
     return number_in<std::uint64_t>(text)
                ? ""

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/error.h"
 #include "integrators/chosen_settings.h"
@@ -17,6 +18,18 @@ namespace photonlab {
 
 /// "640x480"; InputError for anything else.
 Resolution parse_resolution(const std::string& text);
+
+/// Values for the $names of a scene file, in place of its <default>s.
+class SceneParameters {
+public:
+    void add_to(CLI::App& command);
+
+    /// By name. InputError for what is not NAME=VALUE, and for a name that is given twice.
+    std::map<std::string, std::string> values() const;
+
+private:
+    std::vector<std::string> texts_;
+};
 
 /// Checks of CLI11, which by itself takes numbers that are too large for the largest, and NaN for any: a whole number
 /// of 64 bits; a number of seconds, finite and at least 0. Empty where it is sound.

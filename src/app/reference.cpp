@@ -25,6 +25,7 @@ struct ReferenceOptions {
     ReferenceSettings settings;
     std::filesystem::path output;
     std::string resolution;
+    SceneParameters parameters;
     std::optional<int> max_depth;
 };
 
@@ -32,7 +33,8 @@ void make_reference(ReferenceOptions options) {
     std::optional<Resolution> resolution;
     if (!options.resolution.empty()) resolution = parse_resolution(options.resolution);
     start_threads(options.settings.threads);
-    const Scene scene = build_scene(load_scene_file(options.settings.scene_file), resolution);
+    const Scene scene =
+        build_scene(load_scene_file(options.settings.scene_file, options.parameters.values()), resolution);
     options.settings.max_depth = options.max_depth.value_or(scene.max_depth);
 
     const bool adds = options.settings.samples > 0;
@@ -93,6 +95,7 @@ void add_reference_command(CLI::App& app) {
                 "the light that photons find [{}]",
                 settings.samples))
         ->check(CLI::Range(0u, 0x7fffffffu));
+    options->parameters.add_to(*command);
     command->add_option("--resolution", options->resolution, "WIDTHxHEIGHT in place of the scene file's");
     command->add_option("--samples-per-pixel", settings.samples_per_pixel,
                         fmt::format("sample positions, a perfect square [{}]", settings.samples_per_pixel));

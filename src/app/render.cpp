@@ -44,6 +44,7 @@ struct RenderOptions {
     std::uint64_t seed = 1;
     int threads = hardware_threads();
     std::string resolution;
+    SceneParameters parameters;
     int samples_per_pixel = 1;
     std::string reference;
     std::string csv;
@@ -284,7 +285,7 @@ void render(const RenderOptions& options) {
     if (!options.resolution.empty()) resolution = parse_resolution(options.resolution);
 
     start_threads(options.threads);
-    const Scene scene = build_scene(load_scene_file(options.scene), resolution);
+    const Scene scene = build_scene(load_scene_file(options.scene, options.parameters.values()), resolution);
     const Experiment experiment = experiment_of(options, chosen, scene, snapshots);
     const ExperimentRun& run = experiment.runs[0];
     PreparedRun prepared{&run, settings_of(experiment, run, scene)};
@@ -351,6 +352,7 @@ void add_render_command(CLI::App& app) {
         ->check(require_whole_number);
     command->add_option("--threads", options->threads, "threads to use [all]; the image does not depend on it")
         ->check(CLI::Range(1, 1024));
+    options->parameters.add_to(*command);
     command->add_option("--resolution", options->resolution, "WIDTHxHEIGHT in place of the scene file's");
     command->add_option("--samples-per-pixel", options->samples_per_pixel,
                         fmt::format("sample positions, a perfect square [{}]", options->samples_per_pixel));

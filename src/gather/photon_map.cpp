@@ -45,7 +45,7 @@ public:
         for (; inside != 0; inside &= inside - 1) {
             const auto slot = static_cast<std::size_t>(std::countr_zero(inside));
             const std::size_t query = cluster_->first() + slot;
-            if (!side.is_accepted_at(queries_[query].normal)) continue;
+            if (!side.is_accepted_at(queries_[query])) continue;
             if (count_ == capacity) flush();
             run_[count_++] = {squared_distance[slot], static_cast<std::uint32_t>(index),
                               static_cast<std::uint32_t>(query)};
@@ -84,7 +84,7 @@ public:
     bool take(const Vector& position, std::size_t index, const Photon& photon) {
         const FoundPhoton found{squared_distance_between(position, query_.position), static_cast<std::uint32_t>(index),
                                 0};
-        if (found.squared_distance > squared_radius_ || !PhotonSide(photon).is_accepted_at(query_.normal)) return false;
+        if (found.squared_distance > squared_radius_ || !PhotonSide(photon).is_accepted_at(query_)) return false;
         if (nearest_.size() == k_) {
             if (!is_nearer(found, farthest())) return false;
             if (!ordered_) std::pop_heap(nearest_.begin(), nearest_.end(), is_nearer);

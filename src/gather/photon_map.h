@@ -22,20 +22,39 @@
 
 namespace photonlab {
 
+/// At an interface that spreads what arrives on either side, as rough glass does: the side of the shape that lies
+/// beyond, as seen from the viewer. A photon counts that arrived there, or on the viewer's side; not one on another
+/// face that happens to lie near, whose inside and outside are the other way around. At other surfaces nothing beyond
+/// counts.
+enum class Beyond : std::uint8_t { Nothing, Front, Back };
+
+/// A surface point that asks for photons.
+struct GatherQuery {
+    Vector position;
+    Vector normal;  ///< unit, facing the viewer
+    double radius;  ///< unit box
+    Beyond beyond = Beyond::Nothing;
+};
+
 /// What of a photon decides whether it counts at a surface point.
 struct PhotonSide {
     Vector incoming;  ///< length between 0.5 and 1
     Vector normal;    ///< likewise
     float least;      ///< 60 degrees: half the length of `normal`
+    bool from_back;
 
     explicit PhotonSide(const Photon& photon)
         : incoming(photon.incoming.unnormalized()),
           normal(photon.normal.unnormalized()),
-          least(0.5f * std::sqrt(normal.length2())) {}
+          least(0.5f * std::sqrt(normal.length2())),
+          from_back(photon.from_back != 0) {}
 
-    /// `surface_normal` is unit and faces the viewer.
-    bool is_accepted_at(const Vector& surface_normal) const {
-        return incoming.dot(surface_normal) > 0.0f && normal.dot(surface_normal) > least;
+    bool is_accepted_at(const GatherQuery& query) const {
+        const float along = incoming.dot(query.normal);
+        const float facing = normal.dot(query.normal);
+        if (query.beyond == Beyond::Nothing) return along > 0.0f && facing > least;
+        const bool lies_beyond = from_back == (query.beyond == Beyond::Back);
+        return lies_beyond ? along < 0.0f && facing < -least : along > 0.0f && facing > least;
     }
 };
 
@@ -43,13 +62,6 @@ struct PhotonSide {
 inline double squared_distance_between(const Vector& a, const Vector& b) {
     return (VectorD(a) - VectorD(b)).length2();
 }
-
-/// A surface point that asks for photons.
-struct GatherQuery {
-    Vector position;
-    Vector normal;  ///< unit, facing the viewer
-    double radius;  ///< unit box
-};
 
 /// A photon that counts at a query.
 struct FoundPhoton {
@@ -106,11 +118,14 @@ public:
     template <typename Visit>
     NearestPhotons nearest(const Vector& position, const Vector& normal, std::size_t k, double max_radius,
                            const Visit& visit, double eps = 0.0) const {
-        return find_nearest({position, normal, max_radius}, k, eps,
-                            [&](std::span<const FoundPhoton> carrying, double squared_radius) {
-                                for (const FoundPhoton& found : carrying)
-                                    visit(photons_[found.photon], found.squared_distance, squared_radius);
-                            });
+        return nearest({position, normal, max_radius}, k, visit, eps);
+    }
+    template <typename Visit>
+    NearestPhotons nearest(const GatherQuery& query, std::size_t k, const Visit& visit, double eps = 0.0) const {
+        return find_nearest(query, k, eps, [&](std::span<const FoundPhoton> carrying, double squared_radius) {
+            for (const FoundPhoton& found : carrying)
+                visit(photons_[found.photon], found.squared_distance, squared_radius);
+        });
     }
 
     std::size_t size() const { return photons_.size(); }    ///< photons that can be found

@@ -28,7 +28,7 @@ class FluxSum {
 public:
     FluxSum(const Scene& scene, const HitPoint& point, int max_depth)
         : camera_edges_(point.camera_edges), max_depth_(max_depth) {
-        const Bsdf bsdf = bsdf_at(scene.materials[point.material], point.texture_coordinate, false);
+        const Bsdf bsdf = bsdf_at(scene.materials[point.material], point.texture_coordinate, point.from_back);
         if (const std::optional<Color> uniform = uniform_value(bsdf))
             uniform_ = *uniform;
         else
@@ -79,6 +79,14 @@ private:
     std::optional<Glossy> glossy_;
 };
 
+/// What a hit point asks the map for within `radius` (unit box).
+inline GatherQuery query_at(const Scene& scene, const HitPoint& point, double radius) {
+    GatherQuery query{point.position, point.normal, radius};
+    if (may_scatter_through(scene.materials[point.material]))
+        query.beyond = point.from_back ? Beyond::Front : Beyond::Back;
+    return query;
+}
+
 /// What one gather finds at one hit point.
 template <typename Moments>
 struct PointGather {
@@ -123,7 +131,7 @@ std::vector<PointGather<Moments>> gather_within(const PhotonMap& map, const Scen
     for (std::size_t i = range.begin; i < range.end; ++i) {
         const HitPoint& point = points[i];
         const GatherReach& reach = reaches.emplace_back(reach_of(i));
-        in_list.push_back({point.position, point.normal, std::max(reach.radius, reach.bandwidth)});
+        in_list.push_back(query_at(scene, point, std::max(reach.radius, reach.bandwidth)));
         gathered.emplace_back(scene, point, settings.max_depth, reach);
     }
     std::vector<GatherQuery> queries;

@@ -26,6 +26,15 @@ struct PathSample {
     ColorD gathered = ColorD(0.0);
 };
 
+/// Density per steradian with which connect_to_light() draws the light that was found in `direction`.
+double connection_density(const Scene& scene, const Surface& surface, const Vector& direction,
+                          const std::optional<Hit>& hit) {
+    const std::uint32_t light = hit ? scene.shapes[hit->shape].emitter : *scene.environment;
+    const double density =
+        hit ? direct_density(scene, surface.position, direction, *hit) : escaped_density(scene, direction);
+    return scene.emitters[light].choice_probability * density;
+}
+
 PathSample trace_path(const Scene& scene, const HitPoint& point, int max_depth, RandomStream& random) {
     PathSample result;
     Surface surface = surface_at(scene, point);
@@ -49,23 +58,22 @@ PathSample trace_path(const Scene& scene, const HitPoint& point, int max_depth, 
         const auto bounce = sample(surface.bsdf, surface.frame.to_local(outgoing), Carried::Radiance, random.next_2d());
         const float survival_draw = random.next();
         if (!bounce) break;
+        // Of a hit point's single directions the camera pass has followed each.
+        if (reflections == 1 && bounce->density == 0.0f) break;
         const Vector direction = surface.frame.to_world(bounce->incoming);
         if (!sides_agree(surface, direction)) break;
         throughput *= bounce->weight;
 
         const auto hit =
             intersect(scene, {offset_from_surface(surface.position, surface.geometric_normal, direction), direction});
-        if (!hit) break;
-        const ColorD emitted = emitted_radiance(scene, *hit, -direction);
+        const ColorD emitted = hit ? emitted_radiance(scene, *hit, -direction) : escaped_radiance(scene, direction);
         if (!is_black(emitted)) {
             double weight = 1.0;  // of a specular direction: connecting to the light cannot find it
-            if (bounce->density > 0.0f) {
-                const double choice = scene.emitters[scene.shapes[hit->shape].emitter].choice_probability;
-                const double light_density = choice * direct_density(scene, surface.position, direction, *hit);
-                weight = bounce->density / (bounce->density + light_density);
-            }
+            if (bounce->density > 0.0f)
+                weight = bounce->density / (bounce->density + connection_density(scene, surface, direction, hit));
             layer += ColorD(throughput) * emitted * weight;
         }
+        if (!hit) break;
 
         if (reflections >= roulette_after) {
             const float survival = std::min(max_channel(throughput), highest_survival);
@@ -87,7 +95,7 @@ void require_findable_light(const Scene& scene, int max_depth) {
     if (all_are_met || !depth_allows(max_depth, 3)) return;
     for (const Shape& shape : scene.shapes) {
         const Material& material = scene.materials[shape.material];
-        if (is_specular(material.bsdf))
+        if (may_be_specular(material))
             throw InputError(scene.name,
                              "cannot be path traced: it has a point light and a " +
                                  std::string(material_kind(material)) + " (\"" + material.id +

@@ -120,7 +120,7 @@ private:
             const HitPoint& point = context_.hit_points.points[i];
             FluxSum& sum = found.emplace_back(context_.scene, point, settings_.max_depth, GatherReach{}).sum;
             const NearestPhotons nearest = map.nearest(
-                point.position, point.normal, search.k, search.max_radius,
+                query_at(context_.scene, point, search.max_radius), search.k,
                 [&](const Photon& photon, double squared_distance, double squared_radius) {
                     sum.add(photon, kernel_weight(settings_.kernel, std::min(1.0, squared_distance / squared_radius)));
                 },

@@ -15,8 +15,10 @@ EmissionSample sample_emission(const Scene& scene, std::uint32_t emitter_index, 
                                double u_triangle, const Imath::V2f& u_direction) {
     const Emitter& emitter = scene.emitters[emitter_index];
     const EmissionDraw draw{u_position, u_triangle, u_direction};
-    const Ray ray = std::visit([&](const auto& light) { return light.emit(scene.shapes, draw); }, emitter.kind);
-    return {ray, emitter.photon_power};
+    Emission emission = std::visit([&](const auto& light) { return light.emit(scene.shapes, draw); }, emitter.kind);
+    if (emission.from && is_occluded(scene, {emission.ray.origin, *emission.from}))
+        emission.ray.origin = *emission.from;
+    return {emission.ray, emitter.photon_power * Color(emission.share)};
 }
 
 std::optional<DirectSample> sample_direct(const Scene& scene, std::uint32_t emitter_index, const Vector& receiver,
@@ -34,6 +36,30 @@ ColorD emitted_radiance(const Scene& scene, const Hit& hit, const Vector& outgoi
     const std::uint32_t emitter = scene.shapes[hit.shape].emitter;
     if (emitter == no_emitter || !(hit.geometric_normal.dot(outgoing) > 0.0f)) return ColorD(0.0);
     return std::get<AreaLight>(scene.emitters[emitter].kind).radiance;
+}
+
+ColorD escaped_radiance(const Scene& scene, const Vector& direction) {
+    if (!scene.environment) return ColorD(0.0);
+    return std::visit(
+        [&]<typename Kind>(const Kind& light) {
+            if constexpr (EnvironmentKind<Kind>)
+                return light.radiance_from(direction);
+            else
+                return ColorD(0.0);
+        },
+        scene.emitters[*scene.environment].kind);
+}
+
+double escaped_density(const Scene& scene, const Vector& direction) {
+    if (!scene.environment) return 0.0;
+    return std::visit(
+        [&]<typename Kind>(const Kind& light) {
+            if constexpr (EnvironmentKind<Kind>)
+                return light.density_of(direction);
+            else
+                return 0.0;
+        },
+        scene.emitters[*scene.environment].kind);
 }
 
 }  // namespace photonlab

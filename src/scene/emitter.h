@@ -18,8 +18,8 @@ std::uint32_t choose_emitter(const Scene& scene, double u);
 /// Light leaving an emitter: the start of a photon path.
 struct EmissionSample {
     Ray ray;       ///< its origin already moved off the emitter's surface
-    Color weight;  ///< flux of this sample relative to Scene::total_power, the choice of light included:
-                   ///< its mean over samples and channels is 1
+    Color weight;  ///< flux of this sample relative to Scene::total_power, the choice of light included: its mean over
+                   ///< samples and channels is 1, but for surfaces beyond the unit box that light from infinity reaches
 };
 
 /// Emits from `emitter`, by its power.
@@ -34,6 +34,13 @@ std::optional<DirectSample> sample_direct(const Scene& scene, std::uint32_t emit
 /// Density per steradian with which sample_direct() draws, from `receiver`, the emitting point at `hit` that was found
 /// in `direction` (unit): without the choice of light; 0 when the shape does not emit that way.
 double direct_density(const Scene& scene, const Vector& receiver, const Vector& direction, const Hit& hit);
+
+/// Radiance that a ray finds which leaves the scene along `direction` (unit).
+ColorD escaped_radiance(const Scene& scene, const Vector& direction);
+
+/// Density per steradian with which sample_direct() draws that direction for the light there: without the choice of
+/// light; 0 where there is none.
+double escaped_density(const Scene& scene, const Vector& direction);
 
 /// Radiance that leaves the hit point towards `outgoing` (unit, away from the surface); 0 where nothing emits.
 ColorD emitted_radiance(const Scene& scene, const Hit& hit, const Vector& outgoing);

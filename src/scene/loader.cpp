@@ -14,6 +14,7 @@
 
 #include "core/error.h"
 #include "core/hash.h"
+#include "core/text/nearest.h"
 #include "core/text/text.h"
 #include "scene/emitters/light_reader.h"
 #include "scene/materials/material_reader.h"
@@ -47,8 +48,9 @@ public:
             } else if (element.tag == "integrator") {
                 read_integrator(element);
                 has_integrator = true;
-            } else if (element.tag == "texture" || element.tag == "alias") {
-                continue;  // read where a material names it
+            } else if (element.tag == "texture" || element.tag == "alias" || element.tag == "film" ||
+                       element.tag == "rfilter" || element.tag == "sampler") {
+                continue;  // read where something names it
             } else if (element.tag == "path") {
                 note(fmt::format("{}: path: there is no folder \"{}\"", element.place, element.attribute("value")));
             } else if (element.tag == "sensor") {
@@ -59,10 +61,11 @@ public:
                 read_sensor(element);
                 has_sensor = true;
             } else {
+                if (element.tag == "medium") fail_medium(element);
                 throw InputError(element.place,
-                                 fmt::format("unknown element <{}> in <scene>; known here: alias, bsdf, default, "
-                                             "emitter, include, integrator, path, sensor, shape, texture",
-                                             element.tag));
+                                 unknown_element(element.tag, {"alias", "bsdf", "default", "emitter", "film", "include",
+                                                               "integrator", "path", "rfilter", "sampler", "sensor",
+                                                               "shape", "texture"}));
             }
         }
         if (!has_sensor) throw InputError(root.place, "expected a <sensor type=\"perspective\"> in the scene");
@@ -77,6 +80,16 @@ private:
     [[noreturn]] static void fail_unknown(const XmlElement& element, std::string_view known) {
         throw InputError(element.place, fmt::format("unknown {} \"{}\"; known here: {}", element.tag,
                                                     element.attribute("type"), known));
+    }
+
+    [[noreturn]] static void fail_medium(const XmlElement& element) {
+        throw InputError(element.place, "participating media are not rendered here: light crosses space unchanged");
+    }
+
+    static std::string unknown_element(const std::string& tag, const std::vector<std::string_view>& known) {
+        const std::string guess = did_you_mean(tag, known);
+        return fmt::format("unknown element <{}> in <scene>{}{}{}", tag, guess,
+                           guess.empty() ? "; known here: " : " Known here: ", fmt::join(known, ", "));
     }
 
     /// Notes are recorded with every run: as text, of bounded length, each once, with files named as from the scene's
@@ -129,7 +142,8 @@ private:
         return {.resolve = [this](const XmlElement& other) -> const XmlElement& { return resolve(other); },
                 .bytes_read = bytes_read_,
                 .texture_pixels = texture_pixels_,
-                .note = [this](const std::string& sentence) { note(sentence); }};
+                .note = [this](const std::string& sentence) { note(sentence); },
+                .images = images_};
     }
 
     // -----------------------------------------------------------------------------------------------------------------
@@ -166,16 +180,19 @@ private:
                 bsdf = &plugin;
             } else if (plugin.tag == "emitter") {
                 if (shape.radiance) throw InputError(object->place, "expected one emitter in a shape, got a second");
-                shape.radiance = read_area_light(plugin, around);
+                const AreaLight::Description light = read_area_light(plugin, around);
+                shape.radiance = light.radiance;
+                shape.sampling_weight = light.sampling_weight;
                 lights_without_shape_.erase(&plugin);
             } else {
+                if (plugin.tag == "medium") fail_medium(*object);
                 throw InputError(object->place,
                                  fmt::format("unexpected <{}> in a shape; known here: bsdf, emitter", plugin.tag));
             }
         }
         shape.material = bsdf ? material_index(*bsdf) : default_material(shape.radiance.has_value());
         reader.has_bsdf = bsdf != nullptr;
-        reader.has_texture = !scene_.materials[shape.material].textures.empty();
+        reader.has_texture = needs_texture_coordinates(scene_.materials[shape.material]);
         shape.geometry = read_geometry(reader);
         scene_.shapes.push_back(std::move(shape));
     }
@@ -251,21 +268,29 @@ private:
         };
         scene_.camera.width = size("width", type == "mfilm" ? 1 : 768);
         scene_.camera.height = size("height", type == "mfilm" ? 1 : 576);
-        const std::pair<const char*, long> whole_film[] = {{"crop_offset_x", 0},
-                                                           {"crop_offset_y", 0},
-                                                           {"crop_width", scene_.camera.width},
-                                                           {"crop_height", scene_.camera.height}};
-        for (const auto& [name, whole] : whole_film) {
-            const long value = properties.integer(name).value_or(whole);
-            if (value != whole)
-                throw InputError(
-                    properties.place_of(name),
-                    fmt::format("{}: expected {}, cropped films are not known here, got {}", name, whole, value));
-        }
+        read_crop(properties);
         for (const XmlElement* object : properties.objects())
             note(fmt::format("{} \"{}\": not read; every pixel is the mean of its samples", object->tag,
                              object->attribute("type")));
         note_unread(element, properties);
+    }
+
+    /// The part of the film that is rendered.
+    void read_crop(Properties& properties) {
+        CameraDescription& camera = scene_.camera;
+        const auto pixels = [&](const char* name, long least, long most, long missing) {
+            const long value = properties.integer(name).value_or(missing);
+            if (value < least || value > most)
+                throw InputError(properties.place_of(name),
+                                 fmt::format("{}: expected {} to {} pixels, got {}", name, least, most, value));
+            return static_cast<int>(value);
+        };
+        FilmCrop crop;
+        crop.x = pixels("crop_offset_x", 0, camera.width - 1, 0);
+        crop.y = pixels("crop_offset_y", 0, camera.height - 1, 0);
+        crop.width = pixels("crop_width", 1, camera.width - crop.x, camera.width - crop.x);
+        crop.height = pixels("crop_height", 1, camera.height - crop.y, camera.height - crop.y);
+        if (crop.width != camera.width || crop.height != camera.height) camera.crop = crop;
     }
 
     /// Horizontal field of view in degrees, from an angle about any of Mitsuba's axes or from a focal length on 35 mm
@@ -381,6 +406,7 @@ private:
     double near_clip_ = 1e-2;      // of the camera
     double far_clip_ = 1e4;
     std::size_t texture_pixels_ = 0;
+    std::map<std::string, std::shared_ptr<const ColorImage>> images_;
     std::map<std::string, const XmlElement*> by_id_;
     std::map<const XmlElement*, std::size_t> materials_;
     std::optional<std::size_t> default_material_;
@@ -395,7 +421,10 @@ SceneDescription load_scene_file(const std::filesystem::path& file,
     SceneDescription scene;
     std::string bytes_read;
     const XmlElement root = read_scene_xml(file, parameters, bytes_read);
-    for (const auto& [name, value] : parameters) bytes_read += fmt::format("\n{}={}", name, value);
+    for (const auto& [name, value] : parameters) {
+        bytes_read += fmt::format("\n{}={}", name, value);
+        scene.notes.push_back(valid_text(fmt::format("${} is \"{}\", as was asked for", name, value.substr(0, 200))));
+    }
     Loader(scene, file.parent_path(), bytes_read).load(root);
 
     scene.hash = hash_text(bytes_read);

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <numeric>
 #include <set>
 #include <tuple>
 
@@ -28,6 +29,18 @@ namespace {
     throw InputError(place, message);
 }
 
+void require_one_environment(const SceneDescription& description) {
+    const std::string* first = nullptr;
+    for (const LightDescription& light : description.lights) {
+        if (!is_environment(light)) continue;
+        if (first)
+            throw InputError(
+                place_of(light),
+                fmt::format("expected one light around the scene, got a second; the first is at {}", *first));
+        first = &place_of(light);
+    }
+}
+
 void require_valid(const SceneDescription& description) {
     for (const Material& material : description.materials) require_valid(material);
     for (const ShapeDescription& shape : description.shapes) {
@@ -38,6 +51,7 @@ void require_valid(const SceneDescription& description) {
         require_valid(shape.geometry, shape.place);
     }
     for (const LightDescription& light : description.lights) require_valid(light);
+    require_one_environment(description);
 }
 
 void include(Bounds& bounds, const Bounds& other) {
@@ -97,8 +111,9 @@ std::string place_of_farthest(const SceneDescription& description) {
 
 Camera make_camera(const CameraDescription& description, std::optional<Resolution> resolution,
                    const ToUnitBox& to_unit_box) {
-    const int width = resolution ? resolution->width : description.width;
-    const int height = resolution ? resolution->height : description.height;
+    const FilmCrop film = description.crop.value_or(FilmCrop{0, 0, description.width, description.height});
+    const int width = resolution ? resolution->width : film.width;
+    const int height = resolution ? resolution->height : film.height;
     if (width < 1 || height < 1)
         throw InputError(fmt::format("resolution: expected at least 1 x 1, got {} x {}", width, height));
     if (!(description.fov_x > 0.0 && description.fov_x < 180.0))
@@ -125,10 +140,16 @@ Camera make_camera(const CameraDescription& description, std::optional<Resolutio
         require_length(description.aperture_radius, 0.0, "aperture_radius");
         require_length(description.focus_distance, std::numeric_limits<double>::min(), "focus_distance");
     }
-    const double image_width = 2.0 * std::tan(description.fov_x * pi / 360.0);  // at distance 1
-    const double image_height = image_width * height / width;                   // square pixels
+    const double film_width = 2.0 * std::tan(description.fov_x * pi / 360.0);  // at distance 1
+    const double film_pixel = film_width / description.width;
+    const double image_width = film_width * (static_cast<double>(film.width) / description.width);
+    const double image_height = image_width * height / width;  // square pixels
+    VectorD middle = forward;
+    if (description.crop)
+        middle -= left * (film_pixel * (film.x + 0.5 * film.width - 0.5 * description.width)) +
+                  up * (film_pixel * (film.y + 0.5 * film.height - 0.5 * description.height));
     return {.position = to_unit_box(position),
-            .forward = forward,
+            .forward = middle,
             .right = -left * image_width,
             .down = -up * image_height,
             .width = width,
@@ -140,24 +161,32 @@ Camera make_camera(const CameraDescription& description, std::optional<Resolutio
 
 /// Lists the lights that have power, and with which probability each is chosen. Ratios of power, not power, so that
 /// light times a constant changes no choice.
-void add_emitters(Scene& scene, const SceneDescription& description, const ToUnitBox& to_unit_box) {
+void add_emitters(Scene& scene, const SceneDescription& description, const SceneExtent& extent) {
     std::vector<std::string> places;
-    const auto add = [&](const Light& light, const std::string& place) {
+    std::vector<double> weights;  // power as often as it is chosen for it
+    const auto add = [&](const Light& light, const std::string& place, double sampling_weight) {
         const ColorD power = std::visit([&](const auto& kind) { return kind.power(scene.shapes); }, light);
         if (!(mean_channel(power) > 0.0)) return false;
         scene.emitters.push_back({light, power, 0.0, 0.0});
         places.push_back(place);
+        weights.push_back(mean_channel(power) * sampling_weight);
         return true;
     };
     for (std::size_t i = 0; i < description.shapes.size(); ++i) {
         const ShapeDescription& shape = description.shapes[i];
         const auto next = static_cast<std::uint32_t>(scene.emitters.size());
-        if (shape.radiance && add(AreaLight{*shape.radiance, static_cast<std::uint32_t>(i)}, shape.place))
+        if (shape.radiance &&
+            add(AreaLight{*shape.radiance, static_cast<std::uint32_t>(i)}, shape.place, shape.sampling_weight))
             scene.shapes[i].emitter = next;
     }
-    for (const LightDescription& light : description.lights) add(place_light(light, to_unit_box), place_of(light));
+    for (const LightDescription& light : description.lights) {
+        const Light placed = place_light(light, extent);
+        const auto next = static_cast<std::uint32_t>(scene.emitters.size());
+        if (add(placed, place_of(light), sampling_weight_of(light)) && is_environment(placed)) scene.environment = next;
+    }
     for (const Emitter& emitter : scene.emitters) scene.total_power += mean_channel(emitter.power);
-    if (!std::isfinite(scene.total_power)) {
+    const double total_weight = std::accumulate(weights.begin(), weights.end(), 0.0);
+    if (!std::isfinite(scene.total_power) || !std::isfinite(total_weight)) {
         const auto brightest = std::max_element(
             scene.emitters.begin(), scene.emitters.end(),
             [](const Emitter& a, const Emitter& b) { return mean_channel(a.power) < mean_channel(b.power); });
@@ -165,8 +194,9 @@ void add_emitters(Scene& scene, const SceneDescription& description, const ToUni
                          "the emitted power overflows double precision; scale the lights down");
     }
     double running = 0.0;
-    for (Emitter& emitter : scene.emitters) {
-        emitter.choice_probability = mean_channel(emitter.power) / scene.total_power;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        Emitter& emitter = scene.emitters[i];
+        emitter.choice_probability = weights[i] / total_weight;
         running += emitter.choice_probability;
         emitter.choice_cdf = running;
         emitter.photon_power = Color(emitter.power / (emitter.choice_probability * scene.total_power));
@@ -174,11 +204,89 @@ void add_emitters(Scene& scene, const SceneDescription& description, const ToUni
     if (!scene.emitters.empty()) scene.emitters.back().choice_cdf = 1.0;
 }
 
+double size_of(const Bounds& bounds) {
+    const VectorD extent = bounds.upper - bounds.lower;
+    return bounds.is_empty() ? 0.0 : std::max({extent.x, extent.y, extent.z});
+}
+
+/// The surfaces that the unit box is made for: all, or all but outsized ones such as a ground that goes on to the
+/// horizon. Those are more than a hundred times as large as all that are smaller together, where the camera stands
+/// among the smaller ones.
+Bounds bounds_without_outsized(const SceneDescription& description) {
+    constexpr double outsized = 100.0;
+    constexpr double near = 20.0;  // sizes, from the camera to the middle of the smaller ones
+    std::vector<Bounds> shapes;
+    for (const ShapeDescription& shape : description.shapes) shapes.push_back(bounds_of(shape.geometry));
+    std::stable_sort(shapes.begin(), shapes.end(),
+                     [](const Bounds& a, const Bounds& b) { return size_of(a) < size_of(b); });
+    const Matrix& camera = description.camera.to_world;
+    const VectorD eye(camera[3][0], camera[3][1], camera[3][2]);
+    Bounds smaller;
+    Bounds chosen;
+    for (const Bounds& shape : shapes) {
+        const double size = size_of(smaller);
+        if (size > 0.0 && size_of(shape) > outsized * size &&
+            ((smaller.lower + smaller.upper) * 0.5 - eye).length() < near * size)
+            chosen = smaller;
+        include(smaller, shape);
+    }
+    constexpr double farthest = 1e9;  // sizes that floats around the smaller ones still tell apart from infinity
+    return chosen.is_empty() || size_of(smaller) > farthest * size_of(chosen) ? smaller : chosen;
+}
+
+/// Balls around both, in the unit box.
+SceneExtent extent_of(const ToUnitBox& to_unit_box, const Bounds& box, const Bounds& all) {
+    SceneExtent extent{.to_unit_box = to_unit_box};
+    if (box.is_empty()) return extent;
+    const auto ball = [&](const Bounds& bounds, VectorD& centre, double& radius) {
+        centre = to_unit_box.exact((bounds.lower + bounds.upper) * 0.5);
+        radius = 0.5 * (bounds.upper - bounds.lower).length() / to_unit_box.unit_length;
+    };
+    ball(box, extent.centre, extent.radius);
+    ball(all, extent.outer_centre, extent.outer_radius);
+    return extent;
+}
+
 }  // namespace
 
 bool has_specular_surfaces(const Scene& scene) {
     return std::any_of(scene.shapes.begin(), scene.shapes.end(),
-                       [&](const Shape& shape) { return is_specular(scene.materials[shape.material].bsdf); });
+                       [&](const Shape& shape) { return may_be_specular(scene.materials[shape.material]); });
+}
+
+namespace {
+
+/// Heights are lengths, so they are taken to the unit box as positions are.
+void scale_heights(Material& material, double unit_length) {
+    if (material.normals) material.normals->scale /= unit_length;
+    if (!material.back || !material.back->normals) return;
+    Material back = *material.back;
+    scale_heights(back, unit_length);
+    material.back = std::make_shared<const Material>(std::move(back));
+}
+
+}  // namespace
+
+/// Of heights h: the surface is moved by h along its normal n, whose own change is left out, so its derivatives become
+/// p_u + n (h_u - n.p_u). [Blinn 1978, "Simulation of Wrinkled Surfaces"]
+Vector turned_normal(const Shape& shape, const Hit& hit, const NormalTexture& normals) {
+    auto [by_u, by_v] = tangents_at(shape, hit);
+    const VectorD normal(hit.shading_normal);
+    VectorD turned;
+    if (normals.is_height) {
+        const TextureGradient gradient = gradient_at(*normals.texture, hit.texture_coordinate);
+        by_u += normal * (normals.scale * luminance(gradient.by_u) - normal.dot(by_u));
+        by_v += normal * (normals.scale * luminance(gradient.by_v) - normal.dot(by_v));
+        turned = by_u.cross(by_v);
+    } else {
+        const ColorD color(color_at(*normals.texture, hit.texture_coordinate));
+        const VectorD along = (by_u - normal * normal.dot(by_u)).normalized();
+        turned = along * (2.0 * color.x - 1.0) + normal.cross(along) * (2.0 * color.y - 1.0) +
+                 normal * (2.0 * color.z - 1.0);
+    }
+    if (!is_finite(turned) || turned.length2() == 0.0) return hit.shading_normal;
+    const Vector unit(turned.normalized());
+    return unit.dot(hit.geometric_normal) < 0.0f ? -unit : unit;
 }
 
 Ray Camera::ray(double x, double y, const Imath::V2f& on_lens) const {
@@ -193,8 +301,9 @@ Ray Camera::ray(double x, double y, const Imath::V2f& on_lens) const {
 
 Scene build_scene(const SceneDescription& description, std::optional<Resolution> resolution) {
     require_valid(description);
-    Bounds bounds;
-    for (const ShapeDescription& shape : description.shapes) include(bounds, bounds_of(shape.geometry));
+    Bounds all;
+    for (const ShapeDescription& shape : description.shapes) include(all, bounds_of(shape.geometry));
+    const Bounds bounds = bounds_without_outsized(description);
     Bounds box = bounds;
     if (box.is_empty())
         for (const LightDescription& light : description.lights) include(box, bounds_of(light));
@@ -213,15 +322,22 @@ Scene build_scene(const SceneDescription& description, std::optional<Resolution>
     scene.unit_length = to_unit_box.unit_length;
     scene.centre = to_unit_box.centre;
     scene.materials = description.materials;
+    for (Material& material : scene.materials) scale_heights(material, to_unit_box.unit_length);
     scene.max_depth = description.max_depth;
+    if (size_of(all) > size_of(bounds))
+        scene.notes.push_back(fmt::format(
+            "surfaces {:.3g} scene units large are around a scene of {:.3g}: its precision and its light from "
+            "infinity are made for the latter",
+            size_of(all), size_of(bounds)));
     if (!bounds.is_empty()) scene.bounding_radius = to_unit_box.length(0.5 * (bounds.upper - bounds.lower).length());
     for (const ShapeDescription& shape : description.shapes) {
-        scene.shapes.push_back(place_shape(
-            shape.geometry, to_unit_box,
-            {.emits = shape.radiance.has_value(), .has_texture = !scene.materials[shape.material].textures.empty()}));
+        scene.shapes.push_back(
+            place_shape(shape.geometry, to_unit_box,
+                        {.emits = shape.radiance.has_value(),
+                         .has_texture = needs_texture_coordinates(scene.materials[shape.material])}));
         scene.shapes.back().material = static_cast<std::uint32_t>(shape.material);
     }
-    add_emitters(scene, description, to_unit_box);
+    add_emitters(scene, description, extent_of(to_unit_box, bounds, all));
     scene.camera = make_camera(description.camera, resolution, to_unit_box);
     scene.embree = build_embree_scene(scene.shapes, scene.name);
     return scene;

@@ -23,7 +23,7 @@ namespace photonlab {
 /// and meets that ray in the plane at `focus_distance`.
 struct Camera {
     Vector position;
-    VectorD forward;  ///< unit length
+    VectorD forward;  ///< to the middle of the image plane at distance 1: unit length, but where a film is cropped
     VectorD right;    ///< as long as the image plane at distance 1 is wide
     VectorD down;     ///< as long as the image plane at distance 1 is high
     int width;
@@ -51,15 +51,18 @@ struct Scene {
     VectorD centre;            ///< of the box, in scene units
     std::vector<Material> materials;
     std::vector<Shape> shapes;
-    std::vector<Emitter> emitters;  ///< only those with power above 0
-    double total_power = 0.0;       ///< sum of mean_channel(power) over emitters
+    std::vector<Emitter> emitters;             ///< only those with power above 0
+    std::optional<std::uint32_t> environment;  ///< that of them which is around the scene
+    double total_power = 0.0;                  ///< sum of mean_channel(power) over emitters
     Camera camera;
     int max_depth = -1;
-    float bounding_radius = 0.0f;  ///< of the surfaces' bounding box: half its diagonal; 0 without surfaces
+    float bounding_radius = 0.0f;  ///< of the bounding box of what the unit box is made for: half its diagonal; 0
+                                   ///< without surfaces
     std::unique_ptr<EmbreeScene, EmbreeSceneDeleter> embree;
 };
 
-/// True when some surface is a mirror or glass: without, no photon is caustic and no camera path branches.
+/// True when light goes on in single directions from some surface, as by mirrors and glass: without, no photon is
+/// caustic and no camera path branches.
 bool has_specular_surfaces(const Scene& scene);
 
 /// Resolution to render at, in place of the scene file's; the horizontal field of view is kept.
@@ -96,7 +99,11 @@ struct Surface {
     Frame frame;              ///< around the shading normal, which faces `outgoing`
     Vector geometric_normal;  ///< unit, facing `outgoing` too
     Vector position;
+    bool from_back;  ///< `outgoing` is on the shape's inside
 };
+
+/// The shading normal at a hit, as the material's texture turns it: unit, on the side of the geometric normal.
+Vector turned_normal(const Shape& shape, const Hit& hit, const NormalTexture& normals);
 
 /// Turns the hit to the side of `outgoing` (unit, away from the surface). Empty when nothing can be reflected there:
 /// the back of a one-sided opaque material, a black material, or a direction on whose side shading and geometric normal
@@ -104,8 +111,10 @@ struct Surface {
 inline std::optional<Surface> orient(const Scene& scene, const Hit& hit, const Vector& outgoing) {
     const std::uint32_t material_index = scene.shapes[hit.shape].material;
     const Material& material = scene.materials[material_index];
+    const Vector shading_normal =
+        material.normals ? turned_normal(scene.shapes[hit.shape], hit, *material.normals) : hit.shading_normal;
     const float geometric = hit.geometric_normal.dot(outgoing);
-    const float shading = hit.shading_normal.dot(outgoing);
+    const float shading = shading_normal.dot(outgoing);
     if (!(geometric * shading > 0.0f)) return std::nullopt;
     const bool from_back = geometric < 0.0f;
     if (from_back && !material.two_sided && !is_transmissive(material.bsdf)) return std::nullopt;
@@ -115,9 +124,10 @@ inline std::optional<Surface> orient(const Scene& scene, const Hit& hit, const V
     return Surface{.bsdf = bsdf,
                    .material = material_index,
                    .texture_coordinate = hit.texture_coordinate,
-                   .frame = make_frame(hit.shading_normal * side),
+                   .frame = make_frame(shading_normal * side),
                    .geometric_normal = hit.geometric_normal * side,
-                   .position = hit.position};
+                   .position = hit.position,
+                   .from_back = from_back};
 }
 
 /// True when both normals see `direction` on the same side; a path must not continue in any other direction.

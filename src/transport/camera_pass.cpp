@@ -208,11 +208,12 @@ private:
     void trace_branch(const Branch& branch, std::uint32_t pixel, RandomStream* random, std::vector<Branch>& pending,
                       Tile& tile) const {
         const std::optional<Hit> hit = intersect(scene_, branch.ray);
-        if (!hit) return;
         const Vector outgoing = -branch.ray.direction;
-        const ColorD emitted = emitted_radiance(scene_, *hit, outgoing);
+        const ColorD emitted =
+            hit ? emitted_radiance(scene_, *hit, outgoing) : escaped_radiance(scene_, branch.ray.direction);
         if (!is_black(emitted))
             tile.emission.push_back({pixel, branch.edges, emitted * ColorD(branch.throughput * share_)});
+        if (!hit) return;
         const std::optional<Surface> surface = orient(scene_, *hit, outgoing);
         if (!surface) return;
         const float distance = branch.distance + hit->distance;
@@ -231,7 +232,8 @@ private:
                                .pixel = pixel,
                                .material = static_cast<std::uint16_t>(surface->material),
                                .camera_edges = static_cast<std::uint16_t>(branch.edges),
-                               .texture_coordinate = surface->texture_coordinate},
+                               .texture_coordinate = surface->texture_coordinate,
+                               .from_back = surface->from_back},
                               uniform_value(surface->bsdf).has_value());
         tile.footprints.push_back(footprint);
     }

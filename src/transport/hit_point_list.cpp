@@ -11,15 +11,15 @@ HitPointList::Kept HitPointList::kept_for(const Scene& scene) {
     Kept kept{false, false};
     for (const Shape& shape : scene.shapes) {
         const Material& material = scene.materials[shape.material];
-        if (is_scattering(material.bsdf) && !uniform_value(material.bsdf)) kept.outgoing = true;
-        if (!material.textures.empty()) kept.texture_coordinates = true;
+        if (may_look_different_from_elsewhere(material)) kept.outgoing = true;
+        if (needs_texture_coordinates(material)) kept.texture_coordinates = true;
     }
     return kept;
 }
 
 void HitPointList::push_back(const HitPoint& point, bool is_diffuse) {
     constexpr std::size_t searched = 32;  // surfaces that meet in a tile are few
-    const Facing facing{point.normal, point.geometric_normal, point.material};
+    const Facing facing{point.normal, point.geometric_normal, point.material, point.from_back};
     std::size_t index = facings_.size();
     for (std::size_t back = 1; back <= std::min(searched, facings_.size()) && index == facings_.size(); ++back)
         if (facings_[facings_.size() - back] == facing) index = facings_.size() - back;
@@ -73,12 +73,13 @@ std::uint64_t HitPointList::bytes() const {
 }
 
 Surface surface_at(const Scene& scene, const HitPoint& point) {
-    return {.bsdf = bsdf_at(scene.materials[point.material], point.texture_coordinate, false),
+    return {.bsdf = bsdf_at(scene.materials[point.material], point.texture_coordinate, point.from_back),
             .material = point.material,
             .texture_coordinate = point.texture_coordinate,
             .frame = make_frame(point.normal),
             .geometric_normal = point.geometric_normal,
-            .position = point.position};
+            .position = point.position,
+            .from_back = point.from_back};
 }
 
 }  // namespace photonlab

@@ -24,6 +24,7 @@ struct HitPoint {
     std::uint16_t material;      ///< index into Scene::materials
     std::uint16_t camera_edges;  ///< edges of the path from the camera to here; 1 when seen directly
     Imath::V2f texture_coordinate;
+    bool from_back = false;  ///< `outgoing` is on the shape's inside
 };
 
 /// Stored once and read often: elements are made when they are asked for.
@@ -60,7 +61,8 @@ public:
                        .pixel = record.pixel,
                        .material = facing.material,
                        .camera_edges = 1,
-                       .texture_coordinate = Imath::V2f(0.0f)};
+                       .texture_coordinate = Imath::V2f(0.0f),
+                       .from_back = facing.from_back};
         if (!is_plain) {
             const View& view = views_[view_index];
             point.weight = view.weight;
@@ -104,6 +106,7 @@ private:
         Vector normal;
         Vector geometric_normal;
         std::uint16_t material;
+        bool from_back;
         bool operator==(const Facing&) const = default;
     };
     /// Of points that are seen by mirrors or glass, or whose material is not diffuse: all others are seen in the same

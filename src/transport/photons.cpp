@@ -54,7 +54,8 @@ void trace_path(const Scene& scene, const PhotonSettings& settings, RandomStream
                                           .power = carried,
                                           .incoming = PackedDirection(arriving),
                                           .normal = CoarseDirection(normal),
-                                          .edges = static_cast<std::uint16_t>(edges & 0x7fffu),
+                                          .edges = static_cast<std::uint16_t>(edges & 0x3fffu),
+                                          .from_back = surface->from_back,
                                           .caustic = only_specular && edges > 1});
             else
                 ++result.nonfinite;

@@ -25,8 +25,9 @@ struct Photon {
                   ///< number of paths; times |incoming.normal| / |incoming.geometric normal| (Veach 1996)
     PackedDirection incoming;  ///< towards where the photon came from
     CoarseDirection normal;    ///< shading normal on the side on which the photon arrived
-    std::uint16_t edges : 15;  ///< edges of the path from the light to here; 1 when it came straight from the light
-    std::uint16_t caustic : 1 = 0;  ///< 1: it came from the light by specular surfaces alone, and by at least one
+    std::uint16_t edges : 14;  ///< edges of the path from the light to here; 1 when it came straight from the light
+    std::uint16_t from_back : 1 = 0;  ///< 1: it arrived on the inside of the shape
+    std::uint16_t caustic : 1 = 0;    ///< 1: it came from the light by specular surfaces alone, and by at least one
 };
 static_assert(sizeof(Photon) == 32);
 

@@ -37,5 +37,36 @@ TEST_F(Info, APhotonHasTheBytesOfItsRecord) {
     EXPECT_NE(info().find(fmt::format("\nphotons     {} bytes each", sizeof(Photon))), std::string::npos);
 }
 
+std::string with_glass(const std::string& reflectance) {
+    return "<scene version='3.0.0'><default name='grey' value='0.1'/><sensor type='perspective'/><emitter "
+           "type='point'/><shape type='sphere'><bsdf type='dielectric'/></shape><shape type='rectangle'><bsdf "
+           "type='plastic'><rgb name='diffuse_reflectance' value='" +
+           reflectance + "'/></bsdf></shape></scene>";
+}
+
+TEST_F(Info, SaysWhatMethodsDoWithASurfaceAndALight) {
+    std::string said;
+    ASSERT_EQ(run_program({"info", folder_.write("glass.xml", with_glass("$grey")).string()}, said), 0) << said;
+    for (const std::string line :
+         {"1 followed into every single direction; nothing is gathered there\n",
+          "1 gathered at, and followed into every single direction\n", "warning     1 lights have no size"})
+        EXPECT_NE(said.find(line), std::string::npos) << line << said;
+}
+
+TEST_F(Info, TakesValuesForTheNamesOfAScene) {
+    const std::string scene = folder_.write("glass.xml", with_glass("$grey")).string();
+    std::string said;
+    EXPECT_EQ(run_program({"info", scene, "-D", "grey=0.5"}, said), 0) << said;
+    EXPECT_NE(said.find("$grey is \"0.5\""), std::string::npos) << said;
+    EXPECT_EQ(run_program({"info", scene, "-Dgrey=2"}, said), 2);
+    EXPECT_NE(said.find("diffuse_reflectance: expected values in [0, 1]"), std::string::npos) << said;
+    EXPECT_EQ(run_program({"info", scene, "-D", "gray=0.5"}, said), 2);
+    EXPECT_NE(said.find("no parameter $gray"), std::string::npos) << said;
+    EXPECT_EQ(run_program({"info", scene, "-D", "grey"}, said), 2);
+    EXPECT_NE(said.find("-D: expected NAME=VALUE, got \"grey\""), std::string::npos) << said;
+    EXPECT_EQ(run_program({"info", scene, "-D", "grey=1", "-D", "grey=0"}, said), 2);
+    EXPECT_NE(said.find("-D: grey is given twice"), std::string::npos) << said;
+}
+
 }  // namespace
 }  // namespace photonlab

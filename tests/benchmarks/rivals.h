@@ -22,7 +22,7 @@ namespace photonlab::benchmarks {
 /// True when the photon counts: as PhotonMap decides it.
 inline bool counts(const Photon& photon, const GatherQuery& query) {
     return squared_distance_between(photon.position, query.position) <= query.radius * query.radius &&
-           PhotonSide(photon).is_accepted_at(query.normal);
+           PhotonSide(photon).is_accepted_at(query);
 }
 
 /// Photons sorted by the cell they lie in. [Teschner et al. 2003, without the hash]

@@ -18,7 +18,7 @@ void read_scene(const std::filesystem::path& file) {
 }
 
 TEST(SceneMistakes, EachGetsItsMessage) {
-    expect_messages("scene", ".xml", 175, read_scene);
+    expect_messages("scene", ".xml", 187, read_scene);
 }
 
 TEST(MeshMistakes, EachGetsItsMessage) {

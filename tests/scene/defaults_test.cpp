@@ -212,7 +212,7 @@ std::vector<Default> defaults() {
          "0.6 3",
          "bitmap.cpp: false, and floats are linear all the same",
          shape(bitmap),
-         [](const SceneDescription& scene) { return numbers(ColorD(bitmap_of(scene).image.pixels.at(0))); },
+         [](const SceneDescription& scene) { return numbers(ColorD(bitmap_of(scene).image->pixels.at(0))); },
          {0.25, 0.25, 0.25}},
         {"bitmap", "filter_type", "3", "bitmap.cpp: bilinear", shape(bitmap), middle, {0.375, 0.375, 0.375}},
         {"bitmap",

@@ -299,9 +299,9 @@ TEST_F(FamiliesTest, BitmapsHaveOtherPropertiesIn06) {
             EXPECT_THROW(texture("3.0.0", property), InputError) << filter;
         }
     }
-    EXPECT_NEAR(texture("0.6.0", "<float name='gamma' value='1'/>").image.pixels.at(0).x, 0.25, 1e-6);
+    EXPECT_NEAR(texture("0.6.0", "<float name='gamma' value='1'/>").image->pixels.at(0).x, 0.25, 1e-6);
     for (const std::string other :
-         {"<boolean name='raw' value='true'/>", "<transform name='to_uv'/>", "<float name='gamma' value='2.2'/>"})
+         {"<boolean name='raw' value='true'/>", "<transform name='to_uv'/>", "<float name='gamma' value='-2.2'/>"})
         EXPECT_THROW(texture("0.6.0", other), InputError) << other;
     for (const std::string other : {"<float name='uscale' value='2'/>", "<float name='gamma' value='1'/>"})
         EXPECT_THROW(texture("3.0.0", other), InputError) << other;

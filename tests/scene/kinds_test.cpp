@@ -61,14 +61,14 @@ TEST(Kinds, OfTexturesHaveChecks) {
 
 struct SoundLight : PointLight {
     struct Description : PointLightDescription {
-        SoundLight placed(const ToUnitBox&) const;
+        SoundLight placed(const SceneExtent&) const;
     };
     static Description read(LightReader&);
 };
 struct LightWithoutCheck : PointLight {
     struct Description : PointLightDescription {
         void check() const = delete;
-        LightWithoutCheck placed(const ToUnitBox&) const;
+        LightWithoutCheck placed(const SceneExtent&) const;
     };
     static Description read(LightReader&);
 };

@@ -431,17 +431,17 @@ TEST(SpecularSurfaces, OfAGlassBallTurnARayByTheClosedForm) {
 
 /// 3 x 2 pixels, each of a value of its own; exact in float32.
 Bitmap small_texture(const Matrix& to_uv = Matrix()) {
-    Bitmap texture{{3, 2, std::vector<Color>(6)}, to_uv};
+    ColorImage image{3, 2, std::vector<Color>(6)};
     const float values[] = {0.0f, 0.25f, 1.0f, 0.5f, 0.75f, 0.125f};
-    for (std::size_t i = 0; i < 6; ++i) texture.image.pixels[i] = Color(values[i], 1.0f - values[i], 0.5f * values[i]);
-    return texture;
+    for (std::size_t i = 0; i < 6; ++i) image.pixels[i] = Color(values[i], 1.0f - values[i], 0.5f * values[i]);
+    return {std::make_shared<const ColorImage>(std::move(image)), to_uv};
 }
 
 TEST(Texture, HasItsPixelsAtTheirCentresAndItsFirstRowAtZero) {
     const Bitmap texture = small_texture();
     for (int row = 0; row < 2; ++row)
         for (int column = 0; column < 3; ++column) {
-            const Color& pixel = texture.image.pixels[static_cast<std::size_t>(row * 3 + column)];
+            const Color& pixel = texture.image->pixels[static_cast<std::size_t>(row * 3 + column)];
             const Color found =
                 texture.color_at({(static_cast<float>(column) + 0.5f) / 3.0f, (static_cast<float>(row) + 0.5f) / 2.0f});
             for (int channel = 0; channel < 3; ++channel) EXPECT_NEAR(found[channel], pixel[channel], float_rounding);

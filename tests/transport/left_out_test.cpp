@@ -30,8 +30,9 @@ TEST(LeftOut, IsNothingThatAMirrorATextureOrAShineNeeds) {
     scene.materials.push_back({.id = "mirror", .bsdf = Conductor{}});
     scene.shapes.push_back(disk({0, 50, 0}, {0, 1, 0}, 1.0, scene.materials.size() - 1));
     EXPECT_EQ(left_out_of(scene).find("no mirror"), std::string::npos);
-    scene.materials[0].textures = {
-        textured(&Diffuse::reflectance, std::make_shared<Texture>(Bitmap{{1, 1, {Color(0.5f)}}, Matrix()}))};
+    scene.materials[0].textures = {textured(
+        &Diffuse::reflectance,
+        std::make_shared<Texture>(Bitmap{std::make_shared<ColorImage>(ColorImage{1, 1, {Color(0.5f)}}), Matrix()}))};
     EXPECT_EQ(left_out_of(scene).find("no textures"), std::string::npos);
     const auto table = std::make_shared<MerlTable>();
     scene.materials.push_back({.id = "shiny", .bsdf = Merl{table.get()}, .data = table});

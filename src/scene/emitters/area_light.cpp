@@ -5,10 +5,10 @@
 
 namespace photonlab {
 
-Ray AreaLight::emit(const std::vector<Shape>& shapes, const EmissionDraw& draw) const {
+Emission AreaLight::emit(const std::vector<Shape>& shapes, const EmissionDraw& draw) const {
     const SurfacePoint point = sample_area(shapes[shape], draw.u_position, draw.u_triangle);
     const Vector direction = make_frame(point.normal).to_world(sample_cosine_hemisphere(draw.u_direction));
-    return {offset_from_surface(point.position, point.normal, direction), direction};
+    return {{offset_from_surface(point.position, point.normal, direction), direction}};
 }
 
 std::optional<DirectSample> AreaLight::sample_direct(const std::vector<Shape>& shapes, const Vector& receiver,
@@ -22,8 +22,9 @@ std::optional<DirectSample> AreaLight::sample_direct(const std::vector<Shape>& s
                         .is_delta = false};
 }
 
-ColorD AreaLight::read(LightReader& reader) {
-    return reader.light("radiance", ColorD(1.0));
+AreaLight::Description AreaLight::read(LightReader& reader) {
+    reader.require_no_objects();
+    return {reader.light("radiance", ColorD(1.0))};
 }
 
 }  // namespace photonlab

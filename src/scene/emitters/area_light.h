@@ -16,12 +16,16 @@ struct AreaLight {
     std::uint32_t shape;
 
     ColorD power(const std::vector<Shape>& shapes) const { return radiance * (pi * shapes[shape].area); }
-    Ray emit(const std::vector<Shape>& shapes, const EmissionDraw& draw) const;
+    Emission emit(const std::vector<Shape>& shapes, const EmissionDraw& draw) const;
     std::optional<DirectSample> sample_direct(const std::vector<Shape>& shapes, const Vector& receiver,
                                               const Imath::V2f& u, double u_triangle) const;
 
-    /// The radiance, which is all that a shape's <emitter> says.
-    static ColorD read(LightReader& reader);
+    /// What a shape's <emitter> says.
+    struct Description {
+        ColorD radiance;
+        double sampling_weight = 1.0;
+    };
+    static Description read(LightReader& reader);
     static void check(const ColorD& radiance, const std::string& place) { require_light(radiance, place, "radiance"); }
 };
 static_assert(LightKind<AreaLight>);

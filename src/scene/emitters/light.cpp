@@ -24,8 +24,29 @@ Bounds bounds_of(const LightDescription& light) {
     return std::visit([](const auto& description) { return description.bounds(); }, light);
 }
 
-Light place_light(const LightDescription& light, const ToUnitBox& to_unit_box) {
-    return std::visit([&](const auto& description) -> Light { return description.placed(to_unit_box); }, light);
+double sampling_weight_of(const LightDescription& light) {
+    return std::visit([](const auto& description) { return description.sampling_weight; }, light);
+}
+
+namespace {
+
+template <typename... Kinds>
+bool is_environment_of(const LightDescription& light, const std::variant<Kinds...>*) {
+    return ((EnvironmentKind<Kinds> && std::holds_alternative<typename Kinds::Description>(light)) || ...);
+}
+
+}  // namespace
+
+bool is_environment(const LightDescription& light) {
+    return is_environment_of(light, static_cast<const SceneLight*>(nullptr));
+}
+
+bool is_environment(const Light& light) {
+    return std::visit([]<typename Kind>(const Kind&) { return EnvironmentKind<Kind>; }, light);
+}
+
+Light place_light(const LightDescription& light, const SceneExtent& extent) {
+    return std::visit([&](const auto& description) -> Light { return description.placed(extent); }, light);
 }
 
 }  // namespace photonlab

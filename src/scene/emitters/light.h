@@ -24,9 +24,10 @@ using Light = decltype(any_light(std::declval<SceneLight>()));
 struct Emitter {
     Light kind;
     ColorD power;                      ///< of the whole emitter
-    double choice_probability;         ///< with which lights are chosen by power: mean_channel(power) / total
+    double choice_probability;         ///< with which lights are chosen: by mean_channel(power) * sampling weight
     double choice_cdf;                 ///< running sum of choice_probability, the last emitter's is 1
-    Color photon_power = Color(0.0f);  ///< what a photon starts with: power / (choice_probability * total_power)
+    Color photon_power = Color(0.0f);  ///< what a photon starts with in the mean: power / (choice_probability *
+                                       ///< total_power)
 };
 
 /// The kind of light, as scene files call it.
@@ -45,9 +46,16 @@ void require_valid(const LightDescription& light);
 /// "file:line" for messages.
 const std::string& place_of(const LightDescription& light);
 
+/// How often it is chosen for its power: 1 unless the scene file says otherwise.
+double sampling_weight_of(const LightDescription& light);
+
+/// True for a light around the scene, of which there can be one.
+bool is_environment(const LightDescription& light);
+bool is_environment(const Light& light);
+
 /// Scene units; empty when it lies at infinity.
 Bounds bounds_of(const LightDescription& light);
 
-Light place_light(const LightDescription& light, const ToUnitBox& to_unit_box);
+Light place_light(const LightDescription& light, const SceneExtent& extent);
 
 }  // namespace photonlab

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "scene/mitsuba/transform.h"
 
 namespace photonlab {
 
@@ -16,34 +17,70 @@ ColorD LightReader::light(const std::string& name, const ColorD& missing) {
     return light;
 }
 
+TextureAxes LightReader::axes() {
+    const Matrix to_world = properties.transform("to_world").value_or(Matrix());
+    const TextureAxes axes{transform_direction(to_world, {1, 0, 0}).normalized(),
+                           transform_direction(to_world, {0, 1, 0}).normalized(),
+                           transform_direction(to_world, {0, 0, 1}).normalized()};
+    constexpr double rounding = 1e-4;  // matrices in files are often written with six digits
+    for (int i = 0; i < 3; ++i)
+        if (std::abs(axes[static_cast<std::size_t>(i)].dot(axes[static_cast<std::size_t>((i + 1) % 3)])) > rounding)
+            throw InputError(properties.place_of("to_world"),
+                             "to_world: expected a transform without shear, whose axes stay at right angles");
+    return axes;
+}
+
+Vector place_point(const VectorD& position, const SceneExtent& extent, const std::string& place) {
+    const Vector there = extent.to_unit_box(position);
+    if (!is_squarable(there))
+        throw InputError(
+            place, fmt::format("position: expected one nearer to the scene, which is {} scene units large, got {} "
+                               "{} {}",
+                               extent.to_unit_box.unit_length, position.x, position.y, position.z));
+    return there;
+}
+
 namespace {
 
 /// How often a light is chosen, which changes the noise of an image and not what it shows.
-void read_sampling_weight(Plugin& plugin) {
-    const auto weight = plugin.properties.number("sampling_weight");
-    if (!weight) return;
-    if (!(*weight > 0.0))
+double read_sampling_weight(Plugin& plugin) {
+    const double weight = plugin.properties.number("sampling_weight").value_or(1.0);
+    if (!(weight > 0.0))
         throw InputError(plugin.properties.place_of("sampling_weight"),
-                         fmt::format("sampling_weight: expected a number above 0, got {}", *weight));
-    plugin.source.note("sampling_weight of emitters: not read; they are chosen by their power");
+                         fmt::format("sampling_weight: expected a number above 0, got {}", weight));
+    return weight;
 }
 
-template <typename Result, typename Kind>
-Result read_kind(LightReader& reader) {
-    Result light = Kind::read(reader);
-    read_sampling_weight(reader);
-    reader.properties.require_all_known();
+template <typename Kind>
+auto read_weighted(LightReader& reader) {
+    auto light = Kind::read(reader);
+    light.sampling_weight = read_sampling_weight(reader);
+    reader.require_all_known();
     return light;
+}
+
+template <typename Kind>
+LightDescription read_kind(LightReader& reader) {
+    return read_weighted<Kind>(reader);
 }
 
 using Kinds = std::vector<NamedKind<LightReader, LightDescription>>;
 
 template <typename... Lights>
 Kinds kinds_of(const std::variant<Lights...>*) {
-    return {{Lights::name, read_kind<LightDescription, Lights>}...};
+    return {{Lights::name, read_kind<Lights>}...};
 }
 
+/// What there is in Mitsuba for the sky and the sun, which are made of measurements that are not built in here.
+constexpr std::string_view sky_models[] = {"sky", "sun", "sunsky"};
+
 [[noreturn]] void fail_unknown_light(const XmlElement& element) {
+    const std::string& type = element.require("type");
+    if (std::find(std::begin(sky_models), std::end(sky_models), type) != std::end(sky_models))
+        throw InputError(element.place,
+                         fmt::format("emitter \"{}\": models of the sky are not built in; an image of it can light "
+                                     "the scene: <emitter type=\"envmap\"> with a filename",
+                                     type));
     std::vector<std::string> known{fmt::format("{} (in a shape)", AreaLight::name)};
     for (const auto& kind : kinds_of(static_cast<const SceneLight*>(nullptr)))
         known.push_back(fmt::format("{} (in the scene)", kind.name));
@@ -52,10 +89,10 @@ Kinds kinds_of(const std::variant<Lights...>*) {
 
 }  // namespace
 
-ColorD read_area_light(const XmlElement& element, const SceneSource& source) {
+AreaLight::Description read_area_light(const XmlElement& element, const SceneSource& source) {
     if (element.require("type") != AreaLight::name) fail_unknown_light(element);
     LightReader reader(element, source);
-    return read_kind<ColorD, AreaLight>(reader);
+    return read_weighted<AreaLight>(reader);
 }
 
 LightDescription read_scene_light(const XmlElement& element, const SceneSource& source) {

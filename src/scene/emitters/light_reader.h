@@ -12,10 +12,16 @@ struct LightReader : Plugin {
 
     /// What it emits, at least 0 a channel.
     ColorD light(const std::string& name, const ColorD& missing);
+
+    /// The world's directions of the local axes: unit, at right angles, left-handed where mirrored.
+    TextureAxes axes();
 };
 
-/// The radiance of an <emitter> in a shape. Throws InputError.
-ColorD read_area_light(const XmlElement& element, const SceneSource& source);
+/// A light's position in the unit box. InputError at `place` where it is too far out for that.
+Vector place_point(const VectorD& position, const SceneExtent& extent, const std::string& place);
+
+/// The <emitter> of a shape. Throws InputError.
+AreaLight::Description read_area_light(const XmlElement& element, const SceneSource& source);
 
 /// A light in the scene itself. Throws InputError.
 LightDescription read_scene_light(const XmlElement& element, const SceneSource& source);

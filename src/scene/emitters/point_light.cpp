@@ -1,7 +1,5 @@
 #include "scene/emitters/point_light.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 #include "core/error.h"
@@ -12,6 +10,7 @@
 namespace photonlab {
 
 PointLightDescription PointLight::read(LightReader& reader) {
+    reader.require_no_objects();
     const auto position = reader.properties.vector("position");
     const auto to_world = reader.properties.transform("to_world");
     if (position && to_world) throw InputError(reader.element.place, "point: expected position or to_world, got both");
@@ -25,18 +24,13 @@ void PointLightDescription::check() const {
     if (!is_finite(position)) throw InputError(place, "position is not finite");
 }
 
-PointLight PointLightDescription::placed(const ToUnitBox& to_unit_box) const {
-    const Vector there = to_unit_box(position);
-    if (!is_squarable(there))
-        throw InputError(
-            place, fmt::format("position: expected one nearer to the scene, which is {} scene units large, got {} "
-                               "{} {}",
-                               to_unit_box.unit_length, position.x, position.y, position.z));
-    return {intensity / (to_unit_box.unit_length * to_unit_box.unit_length), there};
+PointLight PointLightDescription::placed(const SceneExtent& extent) const {
+    const double unit_length = extent.to_unit_box.unit_length;
+    return {intensity / (unit_length * unit_length), place_point(position, extent, place)};
 }
 
-Ray PointLight::emit(const std::vector<Shape>&, const EmissionDraw& draw) const {
-    return {position, sample_unit_sphere(draw.u_direction)};
+Emission PointLight::emit(const std::vector<Shape>&, const EmissionDraw& draw) const {
+    return {{position, sample_unit_sphere(draw.u_direction)}};
 }
 
 std::optional<DirectSample> PointLight::sample_direct(const std::vector<Shape>&, const Vector& receiver,

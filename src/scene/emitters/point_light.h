@@ -12,10 +12,11 @@ struct PointLightDescription {
     VectorD position;
     ColorD intensity;  ///< W/sr
     std::string place;
+    double sampling_weight = 1.0;
 
     void check() const;
     Bounds bounds() const { return {position, position}; }
-    PointLight placed(const ToUnitBox& to_unit_box) const;
+    PointLight placed(const SceneExtent& extent) const;
 };
 
 struct PointLight {
@@ -29,7 +30,7 @@ struct PointLight {
     static PointLightDescription read(LightReader& reader);
 
     ColorD power(const std::vector<Shape>&) const { return intensity * (4.0 * pi); }
-    Ray emit(const std::vector<Shape>&, const EmissionDraw& draw) const;
+    Emission emit(const std::vector<Shape>&, const EmissionDraw& draw) const;
     std::optional<DirectSample> sample_direct(const std::vector<Shape>&, const Vector& receiver, const Imath::V2f&,
                                               double) const;
 };

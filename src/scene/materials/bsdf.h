@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <concepts>
 #include <optional>
 #include <string>
@@ -36,12 +37,15 @@ struct SpecularBranch {
     Color weight;     ///< what the path's throughput is multiplied by
 };
 
-/// All of them: reflection, refraction or both.
+/// All of them: reflection, refraction or both, and those of everything that a material is made of.
 struct SpecularBranches {
-    std::array<SpecularBranch, 2> branch;
+    static constexpr int limit = 8;
+
+    std::array<SpecularBranch, limit> branch;
     int count = 0;
 
     void add(const Vector& incoming, const Color& weight) {
+        assert(count < limit);
         branch[static_cast<std::size_t>(count++)] = {incoming, weight};
     }
     const SpecularBranch* begin() const { return branch.data(); }
@@ -54,7 +58,10 @@ struct MaterialCheck {
 
     /// What is reflected or let through is no more than what arrived: a colour in [0, 1].
     void in_unit_range(std::string_view what, const Color& color) const;
+    void roughness(float alpha) const;
+    void index(float index) const;  ///< of refraction
     void require(bool holds, const std::string& expected) const;
+    void part(const Material* part) const;  ///< of what it is made
     /// True when the material keeps `data`, which its BSDF looks up.
     bool keeps(const void* data) const;
 };
@@ -91,11 +98,26 @@ concept Transmissive = requires(const Kind& bsdf) {
     { bsdf.turned_over() } -> std::same_as<Kind>;
 };
 
+/// A kind that is made of other materials answers some of the above for each of them, and so by itself and not by its
+/// type: which lobes it has, whether light passes through (`transmits`), whether it is spread to the other side as well
+/// (`scatters_through`), and how many branches it has at most. at() is the kind at one point of a surface, seen from
+/// one side: it looks up what it is made of from there on.
+template <typename Kind>
+concept Composite = requires(const Kind& bsdf, const Imath::V2f& uv) {
+    { bsdf.at(uv, true) } -> std::same_as<Kind>;
+    { bsdf.has_specular_lobe() } -> std::same_as<bool>;
+    { bsdf.has_scattering_lobe() } -> std::same_as<bool>;
+    { bsdf.transmits() } -> std::same_as<bool>;
+    { bsdf.scatters_through() } -> std::same_as<bool>;
+    { bsdf.most_branches() } -> std::same_as<int>;
+};
+
 /// Every kind: its name in scene files, its reader, its checks (that it reflects no more than it gets among them), a
 /// lobe, whether light passes through, and whether none leaves it whatever arrives. read() may be a template of its
 /// reader: then a kind is one header, which does not include the reader.
 template <typename Kind>
-concept BsdfKind = (Specular<Kind> || Scattering<Kind>)&&(Transmissive<Kind> == Kind::is_transmissive) &&
+concept BsdfKind = (Specular<Kind> || Scattering<Kind>)&&(Composite<Kind> ||
+                                                          Transmissive<Kind> == Kind::is_transmissive) &&
                    requires(const Kind& bsdf, MaterialReader& reader, const MaterialCheck& check) {
     { Kind::name } -> std::convertible_to<const char*>;
     { Kind::read(reader) } -> std::same_as<Kind>;

@@ -30,6 +30,18 @@ struct Conductor {
 /// [Born and Wolf, "Principles of Optics", section 14.2]
 double fresnel_conductor(double cos_theta, double eta, double k);
 
+/// Of a metal in its surroundings.
+struct MetalIndex {
+    Color eta;
+    Color k;
+};
+
+/// What a plugin says of it: a name, eta and k, and the medium outside. Throws InputError.
+MetalIndex read_metal(MaterialReader& reader);
+
+/// Refuses what is below 0.
+void require_metal(const MaterialCheck& check, const Color& eta, const Color& k);
+
 /// A metal by its chemical symbol, or "none" for the perfect mirror, in air.
 struct NamedConductor {
     std::string name;

@@ -1,7 +1,5 @@
 #include "scene/materials/dielectric.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 #include "scene/materials/material_reader.h"
@@ -40,17 +38,18 @@ SpecularBranches Dielectric::branches(const Vector& outgoing, Carried carried) c
 }
 
 Dielectric Dielectric::read(MaterialReader& reader) {
+    reader.pass_over_roughness();
     return {.index_here = reader.index("ext_ior", "air"),
             .index_beyond = reader.index("int_ior", "bk7"),
-            .reflectance = reader.factor("specular_reflectance", 1.0),
-            .transmittance = reader.factor("specular_transmittance", 1.0)};
+            .reflectance = reader.factor_or_texture("specular_reflectance", 1.0, &Dielectric::reflectance),
+            .transmittance = reader.factor_or_texture("specular_transmittance", 1.0, &Dielectric::transmittance)};
 }
 
 void Dielectric::check(const MaterialCheck& check) const {
     check.in_unit_range("reflectance", reflectance);
     check.in_unit_range("transmittance", transmittance);
-    for (const float index : {index_here, index_beyond})
-        check.require(std::isfinite(index) && index > 0.0f, fmt::format("an index above 0, got {}", index));
+    check.index(index_here);
+    check.index(index_beyond);
 }
 
 }  // namespace photonlab

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "scene/materials/microfacet.h"
 
 namespace photonlab {
 
@@ -28,23 +29,49 @@ void MaterialCheck::require(bool holds, const std::string& expected) const {
     if (!holds) fail(material, "expected " + expected);
 }
 
+void MaterialCheck::roughness(float alpha) const {
+    require(std::isfinite(alpha) && alpha >= smallest_roughness, fmt::format("a roughness above 0, got {}", alpha));
+}
+
+void MaterialCheck::index(float index) const {
+    require(std::isfinite(index) && index > 0.0f, fmt::format("an index above 0, got {}", index));
+}
+
+void MaterialCheck::part(const Material* part) const {
+    require(part != nullptr, "a nested material");
+    require_valid(*part);
+    // Of a mask alone the frame does not matter to what it adds: it takes over what turns the normals.
+    require(!part->normals || std::holds_alternative<Mask>(material.bsdf),
+            "nested materials whose normals are not turned by a texture");
+    require(!part->back || !part->back->normals, "nested materials whose normals are not turned by a texture");
+}
+
 bool MaterialCheck::keeps(const void* data) const {
     return data && data == material.data.get();
 }
 
 void require_valid(const Material& material) {
     std::visit([&](const auto& bsdf) { bsdf.check(MaterialCheck{material}); }, material.bsdf);
+    if (most_branches(material.bsdf) > SpecularBranches::limit)
+        fail(material, fmt::format("expected at most {} single directions in which light goes on, got {}",
+                                   SpecularBranches::limit, most_branches(material.bsdf)));
+    if (material.back) require_valid(*material.back);
 }
 
 std::optional<BsdfSample> choose_branch(const SpecularBranches& branches, float u) {
     float total = 0.0f;
     for (const SpecularBranch& branch : branches) total += max_channel(branch.weight);
     if (!(total > 0.0f)) return std::nullopt;
-    const bool first = branches.count == 1 || u * total < max_channel(branches.branch[0].weight);
-    const SpecularBranch& chosen = branches.branch[first ? 0 : 1];
-    const float strength = max_channel(chosen.weight);
-    if (!(strength > 0.0f)) return std::nullopt;
-    return BsdfSample{chosen.incoming, chosen.weight * (total / strength), 0.0f};
+    float before = 0.0f;
+    const SpecularBranch* chosen = nullptr;
+    for (const SpecularBranch& branch : branches) {
+        const float strength = max_channel(branch.weight);
+        if (!(strength > 0.0f)) continue;
+        chosen = &branch;
+        before += strength;
+        if (u * total < before) break;
+    }
+    return BsdfSample{chosen->incoming, chosen->weight * (total / max_channel(chosen->weight)), 0.0f};
 }
 
 const char* material_kind(const Material& material) {
@@ -60,6 +87,40 @@ SpecularBranches specular_branches(const Bsdf& bsdf, const Vector& outgoing, Car
                 return SpecularBranches{};
         },
         bsdf);
+}
+
+int most_branches(const Bsdf& bsdf) {
+    return std::visit(
+        []<typename B>(const B& b) {
+            if constexpr (Composite<B>)
+                return b.most_branches();
+            else
+                return !Specular<B> ? 0 : B::is_transmissive ? 2 : 1;
+        },
+        bsdf);
+}
+
+Bsdf part_at(const Material& part, const Imath::V2f& texture_coordinate, bool from_back) {
+    if (from_back && !part.two_sided && !is_transmissive(part.bsdf)) return Diffuse{Color(0.0f)};
+    return bsdf_at(part, texture_coordinate, from_back);
+}
+
+bool needs_texture_coordinates(const Material& material) {
+    return !material.textures.empty() || material.parts_look_up_textures || material.normals ||
+           (material.back && needs_texture_coordinates(*material.back));
+}
+
+bool may_be_specular(const Material& material) {
+    return is_specular(material.bsdf) || (material.back && may_be_specular(*material.back));
+}
+
+bool may_scatter(const Material& material) {
+    return is_scattering(material.bsdf) || (material.back && may_scatter(*material.back));
+}
+
+bool may_look_different_from_elsewhere(const Material& material) {
+    return (is_scattering(material.bsdf) && !uniform_value(material.bsdf)) ||
+           (material.back && may_look_different_from_elsewhere(*material.back));
 }
 
 }  // namespace photonlab

@@ -17,7 +17,7 @@
 
 namespace photonlab {
 
-/// A texture that gives one of a BSDF's colours.
+/// A texture that gives one of a BSDF's colours or numbers.
 struct TexturedColor {
     std::shared_ptr<const Texture> texture;
     std::function<void(Bsdf&, const Color&)> put;  ///< the colour, into its place
@@ -29,20 +29,31 @@ TexturedColor textured(Color Kind::*member, std::shared_ptr<const Texture> textu
     return {std::move(texture), [member](Bsdf& bsdf, const Color& color) { std::get<Kind>(bsdf).*member = color; }};
 }
 
+/// What turns the shading normal from point to point: heights above the surface, or normals in the frame of the
+/// surface's texture coordinates.
+struct NormalTexture {
+    std::shared_ptr<const Texture> texture;
+    bool is_height = true;  ///< else its colours are normals, as 2 c - 1
+    double scale = 1.0;     ///< of heights: scene units, and in a Scene those of the unit box
+};
+
 struct Material {
     std::string id;  ///< its id in the scene file, or its plugin's name
     Bsdf bsdf;
-    bool two_sided = false;                    ///< false: black from behind, unless light passes through
-    std::vector<TexturedColor> textures = {};  ///< of `bsdf`
-    std::shared_ptr<const void> data = {};     ///< what `bsdf` looks up, kept for it
-    std::string place = {};                    ///< "file:line" for messages, or ""
+    bool two_sided = false;                     ///< false: black from behind, unless light passes through
+    std::vector<TexturedColor> textures = {};   ///< of `bsdf`
+    std::shared_ptr<const void> data = {};      ///< what `bsdf` looks up, kept for it
+    std::string place = {};                     ///< "file:line" for messages, or ""
+    std::shared_ptr<const Material> back = {};  ///< what is seen from behind, where that is another
+    std::optional<NormalTexture> normals = {};  ///< of the front
+    bool parts_look_up_textures = false;        ///< those that it is made of
 };
 
 /// Throws InputError for what cannot be rendered.
 void require_valid(const Material& material);
 
-/// f(outgoing, incoming) without the cosine, 1/sr; 0 where either direction is below the surface, and for specular
-/// ones.
+/// f(outgoing, incoming) without the cosine, 1/sr; 0 where a direction is on a side from which nothing comes, and for
+/// single directions.
 inline Color evaluate(const Bsdf& bsdf, const Vector& outgoing, const Vector& incoming) {
     return std::visit(
         [&]<typename B>(const B& b) {
@@ -88,12 +99,26 @@ const char* material_kind(const Material& material);
 
 /// True when light goes on in single directions, as by mirrors and glass.
 inline bool is_specular(const Bsdf& bsdf) {
-    return std::visit([]<typename B>(const B&) { return Specular<B>; }, bsdf);
+    return std::visit(
+        []<typename B>(const B& b) {
+            if constexpr (Composite<B>)
+                return b.has_specular_lobe();
+            else
+                return Specular<B>;
+        },
+        bsdf);
 }
 
 /// True when light is spread: it is gathered there, and photons are stored.
 inline bool is_scattering(const Bsdf& bsdf) {
-    return std::visit([]<typename B>(const B&) { return Scattering<B>; }, bsdf);
+    return std::visit(
+        []<typename B>(const B& b) {
+            if constexpr (Composite<B>)
+                return b.has_scattering_lobe();
+            else
+                return Scattering<B>;
+        },
+        bsdf);
 }
 
 /// f, where it is the same for all directions above the surface.
@@ -111,9 +136,31 @@ inline std::optional<Color> uniform_value(const Bsdf& bsdf) {
 /// Where specular light goes on; none for other BSDFs.
 SpecularBranches specular_branches(const Bsdf& bsdf, const Vector& outgoing, Carried carried);
 
+/// The largest number of them.
+int most_branches(const Bsdf& bsdf);
+
 /// True when light passes through: the surface is then lit from both sides.
 inline bool is_transmissive(const Bsdf& bsdf) {
-    return std::visit([]<typename B>(const B&) { return B::is_transmissive; }, bsdf);
+    return std::visit(
+        []<typename B>(const B& b) {
+            if constexpr (Composite<B>)
+                return b.transmits();
+            else
+                return B::is_transmissive;
+        },
+        bsdf);
+}
+
+/// True when light that arrives on the other side is spread to this one, as by rough glass.
+inline bool scatters_through(const Bsdf& bsdf) {
+    return std::visit(
+        []<typename B>(const B& b) {
+            if constexpr (Composite<B>)
+                return b.scatters_through();
+            else
+                return Scattering<B> && B::is_transmissive;
+        },
+        bsdf);
 }
 
 /// True when no light leaves the surface whatever arrives: nothing is gathered there and no photon stored.
@@ -121,19 +168,35 @@ inline bool is_black(const Bsdf& bsdf) {
     return std::visit([](const auto& b) { return b.is_black(); }, bsdf);
 }
 
-/// The BSDF at one point, seen from one side: textures looked up, an interface turned over when seen from its back.
+/// The BSDF at one point, seen from one side: textures looked up, an interface turned over when seen from its back, and
+/// the material that is there.
 inline Bsdf bsdf_at(const Material& material, const Imath::V2f& texture_coordinate, bool from_back) {
+    if (from_back && material.back) return bsdf_at(*material.back, texture_coordinate, false);
     Bsdf bsdf = material.bsdf;
     for (const TexturedColor& color : material.textures) color.put(bsdf, color_at(*color.texture, texture_coordinate));
-    if (!from_back) return bsdf;
     return std::visit(
-        []<typename B>(const B& b) -> Bsdf {
-            if constexpr (Transmissive<B>)
-                return b.turned_over();
+        [&]<typename B>(const B& b) -> Bsdf {
+            if constexpr (Composite<B>)
+                return b.at(texture_coordinate, from_back && !material.two_sided);
+            else if constexpr (Transmissive<B>)
+                return from_back ? b.turned_over() : b;
             else
                 return b;
         },
         bsdf);
 }
+
+/// bsdf_at() of what another material is made of: black from behind where it is black there.
+Bsdf part_at(const Material& part, const Imath::V2f& texture_coordinate, bool from_back);
+
+// What a material may do somewhere, on one of its sides.
+
+bool needs_texture_coordinates(const Material& material);
+bool may_be_specular(const Material& material);
+bool may_scatter(const Material& material);
+inline bool may_scatter_through(const Material& material) {
+    return scatters_through(material.bsdf);
+}
+bool may_look_different_from_elsewhere(const Material& material);  ///< its f, where it scatters
 
 }  // namespace photonlab

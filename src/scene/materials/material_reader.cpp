@@ -7,6 +7,7 @@
 #include <cctype>
 
 #include "core/error.h"
+#include "core/text/nearest.h"
 #include "scene/materials/wrapper_list.h"
 
 namespace photonlab {
@@ -38,13 +39,12 @@ float MaterialReader::index(const std::string& name, const std::string& missing)
     }
     std::string medium = value ? std::get<std::string>(*value) : missing;
     for (char& c : medium) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    std::vector<std::string> known;
+    std::vector<std::string_view> known{"a number"};
     for (const NamedMedium& candidate : named_media()) {
         if (candidate.name == medium) return static_cast<float>(candidate.index);
         known.push_back(candidate.name);
     }
-    throw InputError(properties.place_of(name), fmt::format("{}: unknown medium \"{}\"; known here: a number, {}", name,
-                                                            medium, fmt::join(known, ", ")));
+    throw InputError(properties.place_of(name), name + ": " + unknown_name("medium", medium, known));
 }
 
 const XmlElement* MaterialReader::texture_called(const std::string& name) const {
@@ -53,21 +53,100 @@ const XmlElement* MaterialReader::texture_called(const std::string& name) const 
     return nullptr;
 }
 
-std::shared_ptr<const Texture> MaterialReader::find_texture(const std::string& name) {
+std::shared_ptr<const Texture> MaterialReader::find_texture(const std::string& name, TextureUse use) {
     textures_asked_.insert(name);
     const XmlElement* object = texture_called(name);
     if (!object) return nullptr;
     if (properties.has(name))
         throw InputError(properties.place_of(name), fmt::format("{}: expected one {}, got a colour and a texture",
                                                                 element.attribute("type"), name));
-    return std::make_shared<const Texture>(read_texture(source.resolve(*object), source));
+    if (!objects_read_.insert(object).second) return nullptr;
+    return std::make_shared<const Texture>(read_texture(source.resolve(*object), source, use));
 }
 
-void MaterialReader::require_all_known() const {
-    properties.require_all_known();
-    std::set<std::string> open = textures_asked_;
+std::shared_ptr<const Texture> MaterialReader::only_texture(TextureUse use) {
+    std::shared_ptr<const Texture> found;
+    for (const XmlElement* object : properties.objects()) {
+        const XmlElement& plugin = source.resolve(*object);
+        if (plugin.tag != "texture") continue;
+        if (found)
+            throw InputError(object->place,
+                             fmt::format("{}: expected one texture, got a second", element.attribute("type")));
+        objects_read_.insert(object);
+        found = std::make_shared<const Texture>(read_texture(plugin, source, use));
+    }
+    if (!found)
+        throw InputError(element.place, fmt::format("{}: expected a texture, got none", element.attribute("type")));
+    return found;
+}
+
+const std::vector<Material>& MaterialReader::parts(std::size_t count) {
+    constexpr int most_nested = 16;  // one inside the other
+    std::vector<Material> parts;
+    for (const XmlElement* object : properties.objects()) {
+        const XmlElement& plugin = source.resolve(*object);
+        if (plugin.tag != "bsdf") continue;
+        objects_read_.insert(object);
+        if (source.depth + 1 > most_nested)
+            throw InputError(object->place, fmt::format("expected at most {} bsdfs inside each other", most_nested));
+        SceneSource inside = source;
+        ++inside.depth;
+        parts.push_back(read_material(plugin, inside));
+        parts.back().id = plugin.attribute("id").empty() ? plugin.attribute("type") : plugin.attribute("id");
+        parts.back().place = plugin.place;
+    }
+    if (parts.size() != count)
+        throw InputError(element.place, fmt::format("{}: expected {} nested bsdf{}, got {}", element.attribute("type"),
+                                                    count, count == 1 ? "" : "s", parts.size()));
+    for (const Material& part : parts)
+        material.parts_look_up_textures = material.parts_look_up_textures || needs_texture_coordinates(part);
+    const auto kept = std::make_shared<const std::vector<Material>>(std::move(parts));
+    material.data = kept;
+    return *kept;
+}
+
+Microfacets MaterialReader::read_facets() {
+    Microfacets facets;
+    std::vector<std::pair<std::string_view, FacetSlopes>> known{{"beckmann", FacetSlopes::Beckmann},
+                                                                {"ggx", FacetSlopes::Ggx}};
+    if (is_version_06()) known.insert(known.end(), {{"phong", FacetSlopes::Phong}, {"as", FacetSlopes::Phong}});
+    std::string name = properties.text("distribution").value_or("beckmann");
+    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    std::vector<std::string_view> names;
+    for (const auto& [known_name, slopes] : known) {
+        names.push_back(known_name);
+        if (name == known_name) facets.slopes = slopes;
+    }
+    if (std::find(names.begin(), names.end(), name) == names.end())
+        throw InputError(properties.place_of("distribution"), unknown_name("distribution", name, names));
+    properties.boolean("sample_visible");  // which changes noise alone
+    const auto along_u = properties.number("alpha_u");
+    const auto along_v = properties.number("alpha_v");
+    if (along_u.has_value() != along_v.has_value() || (along_u && has("alpha")))
+        throw InputError(element.place,
+                         fmt::format("{}: expected alpha, or alpha_u and alpha_v", element.attribute("type")));
+    if (along_u && *along_u != *along_v)
+        throw InputError(properties.place_of("alpha_u"),
+                         fmt::format("alpha_u: expected the same as alpha_v, got {} and {}: roughness that depends on "
+                                     "the direction is not known here",
+                                     *along_u, *along_v));
+    const double alpha = along_u ? *along_u : properties.number("alpha").value_or(0.1);
+    if (!(alpha >= 0.0))
+        throw InputError(properties.place_of("alpha"),
+                         fmt::format("alpha: expected a number of at least 0, got {}", alpha));
+    facets.alpha = std::max(static_cast<float>(alpha), smallest_roughness);
+    return facets;
+}
+
+void MaterialReader::pass_over_roughness() {
+    pass_over({"alpha", "alpha_u", "alpha_v", "distribution"},
+              "it is smooth; what is rough is called rough" + element.attribute("type"));
+}
+
+void MaterialReader::require_all_known() {
+    Plugin::require_all_known();
     for (const XmlElement* object : properties.objects())
-        if (source.resolve(*object).tag != "texture" || !open.erase(object->attribute("name")))
+        if (!objects_read_.count(object))
             throw InputError(object->place,
                              fmt::format("{}: expected {}, got <{}> \"{}\"", element.attribute("type"),
                                          textures_asked_.empty()
@@ -90,7 +169,7 @@ Material read_bsdf(MaterialReader& reader) {
 template <MaterialWrapperKind Kind>
 Material read_wrapper(MaterialReader& reader) {
     Material material = Kind::read(reader);
-    reader.properties.require_all_known();
+    reader.require_all_known();
     return material;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/text/nearest.h"
 
 namespace photonlab {
 
@@ -23,10 +24,43 @@ void Plugin::require_no_objects() const {
                                                     element.attribute("type"), object->tag));
 }
 
+void Plugin::pass_over(const std::vector<std::string>& names, const std::string& why) {
+    std::vector<std::string> found;
+    for (const std::string& name : names)
+        if (properties.pass_over(name)) found.push_back(name);
+    if (!found.empty())
+        source.note(fmt::format("{} \"{}\": not read: {}: {}", element.tag, element.attribute("type"),
+                                fmt::join(found, ", "), why));
+}
+
+namespace {
+
+/// What other programs that read this format have added, and what tells Mitsuba how to go about its work.
+const std::vector<std::string> harmless_properties{"cache",
+                                                   "caustic",
+                                                   "caustic_caster",
+                                                   "caustic_receiver",
+                                                   "is_caustic",
+                                                   "max_anisotropy",
+                                                   "sample_visible",
+                                                   "use_path_guiding",
+                                                   "mis_compensation",
+                                                   "preserve_colors",
+                                                   "use_shadowing_function",
+                                                   "flip_invalid_normals",
+                                                   "srgb",
+                                                   "accel"};
+
+}  // namespace
+
+void Plugin::require_all_known() {
+    pass_over(harmless_properties, "it changes how another program renders, and not what");
+    properties.require_all_known();
+}
+
 void fail_unknown(const XmlElement& element, std::vector<std::string_view> known) {
     std::sort(known.begin(), known.end());
-    throw InputError(element.place, fmt::format("unknown {} \"{}\"; known here: {}", element.tag,
-                                                element.attribute("type"), fmt::join(known, ", ")));
+    throw InputError(element.place, unknown_name(element.tag, element.attribute("type"), known));
 }
 
 }  // namespace photonlab

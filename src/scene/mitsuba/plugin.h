@@ -4,6 +4,8 @@
 #pragma once
 
 #include <functional>
+#include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +14,8 @@
 
 namespace photonlab {
 
+struct ColorImage;
+
 /// What reading a plugin may need from the scene around it.
 struct SceneSource {
     /// The element itself, or the one that a <ref> names.
@@ -19,6 +23,8 @@ struct SceneSource {
     std::string& bytes_read;                       ///< takes the bytes of every file that is read
     std::size_t& texture_pixels;                   ///< of all textures so far
     std::function<void(const std::string&)> note;  ///< takes what the user should know, a sentence each
+    std::map<std::string, std::shared_ptr<const ColorImage>>& images;  ///< of textures, by file and decoding
+    int depth = 0;                                                     ///< of materials inside each other
 };
 
 struct Plugin {
@@ -35,6 +41,13 @@ struct Plugin {
 
     /// Refuses what nests in it. Throws InputError.
     void require_no_objects() const;
+
+    /// Reads past properties that change nothing here, and notes the first of them.
+    void pass_over(const std::vector<std::string>& names, const std::string& why);
+
+    /// Refuses properties that nobody asked for, but for those of other programs that are known to change no image,
+    /// which are noted. Throws InputError.
+    void require_all_known();
 };
 
 /// A kind of a room's list: what scene files call it, and how it is read.

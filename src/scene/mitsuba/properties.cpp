@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "core/error.h"
+#include "core/text/nearest.h"
 #include "image/read_image.h"
 #include "scene/mitsuba/spectrum.h"
 #include "scene/mitsuba/transform.h"
@@ -198,11 +199,15 @@ std::optional<Matrix> Properties::transform(const std::string& name) {
 }
 
 void Properties::require_all_known() const {
-    for (const auto& [name, element] : properties_)
-        if (!asked_.count(name))
-            throw InputError(element->place,
-                             fmt::format("unknown property \"{}\" of {} \"{}\"; known here: {}", name, plugin_.tag,
-                                         plugin_.attribute("type"), fmt::join(asked_, ", ")));
+    const std::vector<std::string_view> known(asked_.begin(), asked_.end());
+    for (const auto& [name, element] : properties_) {
+        if (asked_.count(name)) continue;
+        const std::string guess = did_you_mean(name, known);
+        throw InputError(
+            element->place,
+            fmt::format("unknown property \"{}\" of {} \"{}\"{}{}{}", name, plugin_.tag, plugin_.attribute("type"),
+                        guess, guess.empty() ? "; known here: " : " Known here: ", fmt::join(asked_, ", ")));
+    }
 }
 
 std::vector<std::string> Properties::unknown() const {

@@ -35,6 +35,9 @@ public:
 
     bool has(const std::string& name) const { return properties_.count(name) > 0; }
 
+    /// True when there is one of that name, which then counts as known, but is not among what is said to be known.
+    bool pass_over(const std::string& name) { return properties_.erase(name) > 0; }
+
     MitsubaFamily family() const { return plugin_.family(); }
 
     /// Nested plugins and references, in their order.

@@ -67,6 +67,16 @@ void Disk::complete(Hit& hit, const Ray& ray, float, float) const {
     hit.texture_coordinate = Imath::V2f(Imath::V2d(std::hypot(x, y), turn_to(x, y)));
 }
 
+SurfaceTangents Disk::tangents(const Hit& hit) const {
+    const TextureAxes& axes = texture_axes.value_or(scene_axes);
+    const VectorD from_centre = VectorD(hit.position) - VectorD(centre);
+    const double x = from_centre.dot(axes[0]);
+    const double y = from_centre.dot(axes[1]);
+    const double distance = std::hypot(x, y);
+    const VectorD outward = distance > 0.0 ? axes[0] * (x / distance) + axes[1] * (y / distance) : axes[0];
+    return {outward * static_cast<double>(radius), (axes[1] * x - axes[0] * y) * (2.0 * pi)};
+}
+
 std::vector<SurfacePoint> Disk::probes() const {
     std::vector<SurfacePoint> points;
     // Not the centre, where balls rest.

@@ -112,6 +112,24 @@ void TriangleMesh::complete(Hit& hit, const Ray& ray, float u, float v) const {
         hit.texture_coordinate = Imath::V2f(u, v);
 }
 
+/// Texture coordinates are linear over a triangle, so its edges give the two; where they do not tell u from v, any two
+/// in its plane.
+SurfaceTangents TriangleMesh::tangents(const Hit& hit) const {
+    const auto& triangle = triangles[hit.primitive];
+    const VectorD first = VectorD(positions[triangle.y]) - VectorD(positions[triangle.x]);
+    const VectorD second = VectorD(positions[triangle.z]) - VectorD(positions[triangle.x]);
+    if (texture_coordinates.empty()) return {first, second};
+    const Imath::V2d a(texture_coordinates[triangle.x]);
+    const Imath::V2d uv_first = Imath::V2d(texture_coordinates[triangle.y]) - a;
+    const Imath::V2d uv_second = Imath::V2d(texture_coordinates[triangle.z]) - a;
+    const double area = uv_first.x * uv_second.y - uv_first.y * uv_second.x;
+    if (area == 0.0) {
+        const Frame frame = make_frame(hit.geometric_normal);
+        return {VectorD(frame.tangent), VectorD(frame.bitangent)};
+    }
+    return {(first * uv_second.y - second * uv_first.y) / area, (second * uv_first.x - first * uv_second.x) / area};
+}
+
 SurfacePoint TriangleMesh::sample_area(const Imath::V2f& u, double u_triangle) const {
     const auto found = std::upper_bound(triangle_cdf.begin(), triangle_cdf.end() - 1, u_triangle);
     const auto index = static_cast<std::size_t>(found - triangle_cdf.begin());

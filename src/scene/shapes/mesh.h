@@ -34,6 +34,7 @@ struct TriangleMesh {
 
     double area() const { return surface_area; }
     void complete(Hit& hit, const Ray& ray, float u, float v) const;
+    SurfaceTangents tangents(const Hit& hit) const;
     SurfacePoint sample_area(const Imath::V2f& u, double u_triangle) const;
 };
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "scene/shapes/shape_reader.h"
+#include "scene/shapes/mesh_reader.h"
 
 namespace photonlab {
 
@@ -27,10 +27,6 @@ struct ObjMesh {
 
 /// Reads the file. Throws InputError with file and line.
 ObjMesh read_obj_mesh(const std::filesystem::path& file, const ObjOptions& options);
-
-/// Computes the normals that are not there, as Mitsuba does: face normals weighted by the angle at the vertex.
-/// [Thuermer & Wuethrich 1998, "Computing Vertex Normals from Polygonal Facets"]
-void fill_in_normals(MeshDescription& mesh);
 
 struct Obj {
     static constexpr const char* name = "obj";

@@ -46,6 +46,10 @@ std::vector<std::string_view> analytic_shape_kinds() {
     }(static_cast<const Analytic*>(nullptr));
 }
 
+SurfaceTangents tangents_at(const Shape& shape, const Hit& hit) {
+    return std::visit([&](const auto& geometry) { return geometry.tangents(hit); }, shape.geometry);
+}
+
 SurfacePoint sample_area(const Shape& shape, const Imath::V2f& u, double u_triangle) {
     return std::visit([&](const auto& kind) { return kind.sample_area(u, u_triangle); }, shape.geometry);
 }

@@ -49,6 +49,9 @@ inline void complete(Hit& hit, const Shape& shape, const Ray& ray, float u, floa
     std::visit([&](const auto& geometry) { geometry.complete(hit, ray, u, v); }, shape.geometry);
 }
 
+/// At a hit that is complete.
+SurfaceTangents tangents_at(const Shape& shape, const Hit& hit);
+
 /// A point uniform in area.
 SurfacePoint sample_area(const Shape& shape, const Imath::V2f& u, double u_triangle);
 

@@ -32,7 +32,7 @@ namespace {
 template <typename Kind>
 Geometry read_kind(ShapeReader& reader) {
     Geometry geometry = Kind::read(reader);
-    reader.properties.require_all_known();
+    reader.require_all_known();
     return geometry;
 }
 

@@ -64,6 +64,17 @@ void Sphere::complete(Hit& hit, const Ray& ray, float, float) const {
     hit.texture_coordinate = Imath::V2f(Imath::V2d(turn_to(outward.dot(x), outward.dot(y)), from_pole));
 }
 
+SurfaceTangents Sphere::tangents(const Hit& hit) const {
+    const auto& [x, y, z] = texture_axes.value_or(scene_axes);
+    const VectorD from_centre = VectorD(hit.position) - VectorD(centre);
+    const double along_x = from_centre.dot(x);
+    const double along_y = from_centre.dot(y);
+    const double from_axis = std::hypot(along_x, along_y);
+    const VectorD outward =
+        from_axis > 0.0 ? x * (along_x / from_axis) + y * (along_y / from_axis) : x;  // at a pole, any direction
+    return {(y * along_x - x * along_y) * (2.0 * pi), (outward * from_centre.dot(z) - z * from_axis) * pi};
+}
+
 std::vector<SurfacePoint> Sphere::probes() const {
     std::vector<SurfacePoint> points;
     // Not along the axes, where spheres rest on floors: a single point of contact does no harm.

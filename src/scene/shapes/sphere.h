@@ -36,6 +36,7 @@ struct Sphere {
     Extent extent() const { return {centre, Vector(radius)}; }
     Roots roots(const VectorD& origin, const VectorD& direction) const;
     void complete(Hit& hit, const Ray& ray, float, float) const;
+    SurfaceTangents tangents(const Hit& hit) const;
     std::vector<SurfacePoint> probes() const;
 
     SurfacePoint sample_area(const Imath::V2f& u, double) const;

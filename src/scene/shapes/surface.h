@@ -93,9 +93,16 @@ struct Roots {
     double t[2] = {0.0, 0.0};
 };
 
+/// How the position on a surface changes with its texture coordinates: unit box, not of unit length.
+struct SurfaceTangents {
+    VectorD by_u;
+    VectorD by_v;
+};
+
 /// A kind of shape that is met as it is, and not as triangles. read() gives the description of a <shape>, in the world;
 /// check(place) throws InputError for what cannot be rendered, and placed() takes it to the unit box. complete() fills
-/// a hit of the ray from its distance; probes() are points all over it, away from where others may rest on it.
+/// a hit of the ray from its distance, and tangents() are there; probes() are points all over it, away from where
+/// others may rest on it.
 ///
 /// A kind that can be sampled as seen from a point has sample_seen() and seen_density() as well, which are empty where
 /// the area must do.
@@ -113,6 +120,7 @@ concept AnalyticKind = requires(const Kind& shape, const typename Kind::Descript
     { shape.roots(v, v) } -> std::same_as<Roots>;
     { shape.extent() } -> std::same_as<Extent>;
     { shape.complete(hit, ray, 0.0f, 0.0f) } -> std::same_as<void>;
+    { shape.tangents(hit) } -> std::same_as<SurfaceTangents>;
     { shape.probes() } -> std::same_as<std::vector<SurfacePoint>>;
 };
 

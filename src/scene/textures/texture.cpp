@@ -9,8 +9,7 @@ namespace {
 template <typename Kind>
 Texture read_kind(Plugin& plugin) {
     Kind texture = Kind::read(plugin);
-    plugin.properties.require_all_known();
-    texture.check(plugin.properties.place_of("filename"));
+    plugin.require_all_known();
     return texture;
 }
 
@@ -21,11 +20,17 @@ std::vector<NamedKind<Plugin, Texture>> kinds_of(const std::variant<Kinds...>*) 
 
 }  // namespace
 
-Texture read_texture(const XmlElement& element, const SceneSource& source) {
+void require_reflectance(const Texture& texture, const std::string& place) {
+    std::visit([&](const auto& kind) { kind.check(place); }, texture);
+}
+
+Texture read_texture(const XmlElement& element, const SceneSource& source, TextureUse use) {
     const auto kinds = kinds_of(static_cast<const Texture*>(nullptr));
     const auto& kind = find_kind(kinds, element);
     Plugin plugin(element, source);
-    return kind.read(plugin);
+    Texture texture = kind.read(plugin);
+    if (use == TextureUse::Reflectance) require_reflectance(texture, plugin.properties.place_of("filename"));
+    return texture;
 }
 
 }  // namespace photonlab

@@ -4,6 +4,7 @@
 
 #pragma once
 
+#include <memory>
 #include <variant>
 
 #include "scene/textures/texture_list.h"
@@ -13,12 +14,29 @@ namespace photonlab {
 struct XmlElement;
 struct SceneSource;
 
+struct NestedTexture {
+    Texture texture;
+};
+
 /// The colour at a texture coordinate.
 inline Color color_at(const Texture& texture, const Imath::V2f& texture_coordinate) {
     return std::visit([&](const auto& kind) { return kind.color_at(texture_coordinate); }, texture);
 }
 
-/// The texture of a <texture>, checked. Throws InputError.
-Texture read_texture(const XmlElement& element, const SceneSource& source);
+inline TextureGradient gradient_at(const Texture& texture, const Imath::V2f& texture_coordinate) {
+    return std::visit([&](const auto& kind) { return kind.gradient_at(texture_coordinate); }, texture);
+}
+
+/// Brightness of linear sRGB.
+template <typename T>
+T luminance(const Imath::Color3<T>& color) {
+    return T(0.212671) * color.x + T(0.715160) * color.y + T(0.072169) * color.z;
+}
+
+/// Throws InputError for what is no reflectance.
+void require_reflectance(const Texture& texture, const std::string& place);
+
+/// The texture of a <texture>, checked for its use. Throws InputError.
+Texture read_texture(const XmlElement& element, const SceneSource& source, TextureUse use);
 
 }  // namespace photonlab

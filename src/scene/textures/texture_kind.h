@@ -12,17 +12,30 @@ namespace photonlab {
 
 struct Plugin;
 
+/// What a texture is for, which decides what it may hold. A reflectance is at every point a colour in [0, 1].
+enum class TextureUse { Reflectance, Number, Height, Normal };
+
+/// How fast a colour changes with u and with v.
+struct TextureGradient {
+    ColorD by_u = ColorD(0.0);
+    ColorD by_v = ColorD(0.0);
+};
+
 /// `name` is the plugin's in scene files. read() throws InputError for what the file says wrongly, and check(place)
-/// for what is no reflectance: at every point a colour in [0, 1].
+/// for what is no reflectance.
 template <typename Kind>
 concept TextureKind = requires(const Kind& texture, const Imath::V2f& uv, const std::string& place, Plugin& plugin) {
     { Kind::name } -> std::convertible_to<const char*>;
     { Kind::read(plugin) } -> std::same_as<Kind>;
     { texture.check(place) } -> std::same_as<void>;
     { texture.color_at(uv) } -> std::same_as<Color>;
+    { texture.gradient_at(uv) } -> std::same_as<TextureGradient>;
 };
 
 template <TextureKind... Kinds>
 using TextureOf = std::variant<Kinds...>;
+
+/// A texture inside another, which is not known yet where that is declared.
+struct NestedTexture;
 
 }  // namespace photonlab

@@ -1,0 +1,35 @@
+// Two materials in one, each for its share of the surface.
+
+#pragma once
+
+#include "scene/materials/part.h"
+
+namespace photonlab {
+
+struct Blend {
+    static constexpr const char* name = "blendbsdf";
+
+    Part first;
+    Part second;
+    float weight = 0.5f;  ///< share of the second, in [0, 1]
+
+    SpecularBranches branches(const Vector& outgoing, Carried carried) const;
+    Color evaluate(const Vector& outgoing, const Vector& incoming) const;
+    std::optional<BsdfSample> sample(const Vector& outgoing, Carried carried, const Imath::V2f& u) const;
+    float density(const Vector& outgoing, const Vector& incoming) const;
+    bool is_black() const { return false; }
+
+    Blend at(const Imath::V2f& uv, bool from_back) const {
+        return {first.at(uv, from_back), second.at(uv, from_back), weight};
+    }
+    bool has_specular_lobe() const;
+    bool has_scattering_lobe() const;
+    bool transmits() const { return first.transmits() || second.transmits(); }
+    bool scatters_through() const { return first.scatters_through() || second.scatters_through(); }
+    int most_branches() const { return first.most_branches() + second.most_branches(); }
+
+    static Blend read(MaterialReader& reader);
+    void check(const MaterialCheck& check) const;
+};
+
+}  // namespace photonlab

@@ -1,0 +1,51 @@
+// Rough surfaces as many small facets: how their normals are distributed, how they hide each other, and drawing one of
+// those that are seen.
+//
+// Directions and normals are unit, in the local frame (z along the shading normal). Facets hide each other without
+// regard to where they are (Smith), which gives the share that is seen in closed form. Heights of neighbouring facets
+// are taken as independent on the way in and out: G(a, b) = G1(a) G1(b), as Mitsuba has it.
+//
+// [Walter, Marschner, Li & Torrance 2007, "Microfacet Models for Refraction through Rough Surfaces"; Heitz 2014,
+// "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs"]
+
+#pragma once
+
+#include "core/math.h"
+
+namespace photonlab {
+
+/// How slopes are distributed. Beckmann: normally. Ggx: with long tails. Phong: a power of the cosine.
+enum class FacetSlopes { Beckmann, Ggx, Phong };
+
+/// Facets that are alike in all directions around the normal.
+struct Microfacets {
+    FacetSlopes slopes = FacetSlopes::Beckmann;
+    float alpha = 0.1f;  ///< roughness, at least smallest_roughness; Beckmann: root mean square slope times sqrt(2)
+
+    /// D: area of the facets with this normal, per steradian and area of the surface; 0 below it. D(n) cos integrates
+    /// to 1.
+    double distribution(const Vector& normal) const;
+
+    /// G1: the share of facets with `normal` seen from `direction` that no other hides.
+    double unhidden(const Vector& direction, const Vector& normal) const;
+
+    /// Per steradian, with which sample() draws a normal for `direction`, which is above the surface.
+    double density(const Vector& direction, const Vector& normal) const;
+
+    /// A facet's normal: of Beckmann and Ggx by the area that is seen from `direction`, density G1 D |d.m| / |cos d|;
+    /// of Phong by D cos.
+    Vector sample(const Vector& direction, const Imath::V2f& u) const;
+
+    /// What a facet drawn for `outgoing` brings to a path that goes on along `incoming`, without the reflectance:
+    /// D G |outgoing.m| / (|cos outgoing| density) = G1(incoming), but for Phong.
+    double weight(const Vector& outgoing, const Vector& incoming, const Vector& normal) const;
+};
+
+inline constexpr float smallest_roughness = 1e-4f;  ///< as in Mitsuba, which raises what is below
+
+/// `direction` mirrored at a facet.
+inline Vector mirrored(const Vector& direction, const Vector& normal) {
+    return normal * (2.0f * direction.dot(normal)) - direction;
+}
+
+}  // namespace photonlab

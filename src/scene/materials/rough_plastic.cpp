@@ -1,0 +1,133 @@
+#include "scene/materials/rough_plastic.h"
+
+#include "core/sampling.h"
+#include "scene/materials/dielectric.h"
+#include "scene/materials/material_reader.h"
+
+namespace photonlab {
+
+namespace {
+
+/// Shares of the light along `outgoing` that one facet reflects, and lets through; `eta` is index here over beyond.
+struct Shares {
+    double reflected = 0.0;
+    double let_through = 0.0;
+};
+
+Shares shares_at(const Microfacets& facets, double cosine, double eta) {
+    constexpr int side = 32;
+    const Vector outgoing(static_cast<float>(std::sqrt(1.0 - cosine * cosine)), 0.0f, static_cast<float>(cosine));
+    Shares sum;
+    for (int i = 0; i < side * side; ++i) {
+        const Vector normal = facets.sample(
+            outgoing, {(static_cast<float>(i % side) + 0.5f) / side, (static_cast<float>(i / side) + 0.5f) / side});
+        const double cosine_here = outgoing.dot(normal);
+        if (!(cosine_here > 0.0)) continue;
+        const FresnelDielectric fresnel = fresnel_dielectric(cosine_here, eta);
+        const Vector back = mirrored(outgoing, normal);
+        if (back.z > 0.0f) sum.reflected += fresnel.reflected * facets.weight(outgoing, back, normal);
+        const Vector through =
+            normal * static_cast<float>(eta * cosine_here - fresnel.cos_beyond) - outgoing * static_cast<float>(eta);
+        if (through.z < 0.0f && fresnel.reflected < 1.0)
+            sum.let_through += (1.0 - fresnel.reflected) * facets.weight(outgoing, through, normal);
+    }
+    return {sum.reflected / (side * side), sum.let_through / (side * side)};
+}
+
+}  // namespace
+
+float RoughCoat::let_in_at(float cosine) const {
+    const float at = std::clamp(cosine, 0.0f, 1.0f) * (steps - 1);
+    const int index = std::min(static_cast<int>(at), steps - 2);
+    const float share = at - static_cast<float>(index);
+    return let_in[static_cast<std::size_t>(index)] * (1.0f - share) +
+           let_in[static_cast<std::size_t>(index) + 1] * share;
+}
+
+RoughCoat make_rough_coat(const Microfacets& facets, double eta, bool as_mean) {
+    RoughCoat coat{};
+    double sum = 0.0;
+    for (int step = 0; step < RoughCoat::steps; ++step) {
+        const double cosine = std::max(1e-6, static_cast<double>(step) / (RoughCoat::steps - 1));
+        coat.let_in[static_cast<std::size_t>(step)] =
+            static_cast<float>(shares_at(facets, cosine, 1.0 / eta).let_through);
+        // What comes back is what is not let out: the integral for 0.6, which has it from tables of what is let out.
+        const Shares inside = shares_at(facets, cosine, eta);
+        const bool is_end = step == 0 || step == RoughCoat::steps - 1;
+        sum += as_mean ? inside.reflected * cosine : (1.0 - inside.let_through) * cosine * (is_end ? 0.5 : 1.0);
+    }
+    coat.inner_reflectance = static_cast<float>(2.0 * sum / (as_mean ? RoughCoat::steps : RoughCoat::steps - 1));
+    return coat;
+}
+
+Color RoughPlastic::evaluate(const Vector& outgoing, const Vector& incoming) const {
+    if (outgoing.z <= 0.0f || incoming.z <= 0.0f) return Color(0.0f);
+    const double eta = static_cast<double>(index_outside) / index_inside;
+    const Vector normal = (outgoing + incoming).normalized();
+    const double reflected = fresnel_dielectric(outgoing.dot(normal), eta).reflected;
+    const double shape = facets.distribution(normal) * facets.unhidden(outgoing, normal) *
+                         facets.unhidden(incoming, normal) / (4.0 * outgoing.z * incoming.z);
+    const double let_in = static_cast<double>(coat->let_in_at(outgoing.z)) * coat->let_in_at(incoming.z);
+    Color base = diffuse_reflectance;
+    for (int channel = 0; channel < 3; ++channel)
+        base[channel] /= 1.0f - (nonlinear ? base[channel] : 1.0f) * coat->inner_reflectance;
+    return specular_reflectance * static_cast<float>(reflected * shape) +
+           base * static_cast<float>(let_in * eta * eta / pi);
+}
+
+float RoughPlastic::coat_share(float cosine) const {
+    const float let_in = coat->let_in_at(cosine);
+    const float of_coat = (1.0f - let_in) * max_channel(specular_reflectance);
+    const float of_base = let_in * max_channel(diffuse_reflectance);
+    return of_coat + of_base > 0.0f ? of_coat / (of_coat + of_base) : 0.0f;
+}
+
+std::optional<BsdfSample> RoughPlastic::sample(const Vector& outgoing, Carried, const Imath::V2f& u) const {
+    if (outgoing.z <= 0.0f) return std::nullopt;
+    const float share = coat_share(outgoing.z);
+    const bool is_coat = u.x < share;
+    const float rest = std::min(is_coat ? u.x / share : (u.x - share) / (1.0f - share), 0x1.fffffep-1f);
+    const Vector incoming = is_coat ? mirrored(outgoing, facets.sample(outgoing, {rest, u.y})).normalized()
+                                    : sample_cosine_hemisphere({rest, u.y});
+    if (incoming.z <= 0.0f) return std::nullopt;
+    const float found = density(outgoing, incoming);
+    if (!(found > 0.0f)) return std::nullopt;
+    return BsdfSample{incoming, evaluate(outgoing, incoming) * (incoming.z / found), found};
+}
+
+float RoughPlastic::density(const Vector& outgoing, const Vector& incoming) const {
+    if (outgoing.z <= 0.0f || incoming.z <= 0.0f) return 0.0f;
+    const float share = coat_share(outgoing.z);
+    const Vector normal = (outgoing + incoming).normalized();
+    const double of_coat = facets.density(outgoing, normal) / (4.0 * outgoing.dot(normal));
+    return share * static_cast<float>(of_coat) + (1.0f - share) * cosine_hemisphere_density(incoming.z);
+}
+
+RoughPlastic RoughPlastic::read(MaterialReader& reader) {
+    RoughPlastic plastic{
+        .facets = reader.facets<RoughPlastic>(nullptr),
+        .index_outside = reader.index("ext_ior", "air"),
+        .index_inside = reader.index("int_ior", "polypropylene"),
+        .nonlinear = reader.properties.boolean("nonlinear").value_or(false),
+        .diffuse_reflectance = reader.factor_or_texture("diffuse_reflectance", 0.5, &RoughPlastic::diffuse_reflectance),
+        .specular_reflectance =
+            reader.factor_or_texture("specular_reflectance", 1.0, &RoughPlastic::specular_reflectance)};
+    if (plastic.index_outside == plastic.index_inside) return plastic;  // which is refused
+    const auto coat = std::make_shared<const RoughCoat>(make_rough_coat(
+        plastic.facets, static_cast<double>(plastic.index_inside) / plastic.index_outside, !reader.is_version_06()));
+    reader.material.data = coat;
+    plastic.coat = coat.get();
+    return plastic;
+}
+
+void RoughPlastic::check(const MaterialCheck& check) const {
+    check.in_unit_range("diffuse_reflectance", diffuse_reflectance);
+    check.in_unit_range("specular_reflectance", specular_reflectance);
+    check.roughness(facets.alpha);
+    check.index(index_outside);
+    check.index(index_inside);
+    check.require(index_outside != index_inside, "two different indices");
+    check.require(check.keeps(coat), "its own coat");
+}
+
+}  // namespace photonlab

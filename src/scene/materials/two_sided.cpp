@@ -1,0 +1,31 @@
+#include "scene/materials/two_sided.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace photonlab {
+
+Material TwoSided::read(MaterialReader& reader) {
+    const auto& objects = reader.properties.objects();
+    if (objects.empty() || objects.size() > 2)
+        throw InputError(reader.element.place,
+                         fmt::format("twosided: expected one or two nested bsdfs, got {}", objects.size()));
+    for (const XmlElement* object : objects) {
+        const XmlElement& inner = reader.source.resolve(*object);
+        if (inner.tag != "bsdf" || inner.attribute("type") == name)
+            throw InputError(inner.place, fmt::format("twosided: expected a one-sided bsdf, got {} \"{}\"", inner.tag,
+                                                      inner.attribute("type")));
+    }
+    const std::vector<Material>& sides = reader.parts(objects.size());
+    for (const Material& side : sides)
+        if (is_transmissive(side.bsdf) || side.two_sided)
+            throw InputError(side.place,
+                             fmt::format("twosided: expected a one-sided bsdf, got bsdf \"{}\"", material_kind(side)));
+    Material material = sides.front();
+    material.two_sided = true;
+    if (sides.size() == 2) material.back = std::make_shared<const Material>(sides.back());
+    return material;
+}
+
+}  // namespace photonlab

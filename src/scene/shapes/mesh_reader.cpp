@@ -1,0 +1,86 @@
+#include "scene/shapes/mesh_reader.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace photonlab {
+
+void fill_in_normals(MeshDescription& mesh) {
+    std::vector<VectorD> computed(mesh.positions.size(), VectorD(0.0));
+    for (const auto& triangle : mesh.triangles) {
+        const std::uint32_t corners[3] = {triangle.x, triangle.y, triangle.z};
+        for (int i = 0; i < 3; ++i) {
+            const VectorD& corner = mesh.positions[corners[i]];
+            const VectorD to_next = (mesh.positions[corners[(i + 1) % 3]] - corner).normalized();
+            const VectorD to_last = (mesh.positions[corners[(i + 2) % 3]] - corner).normalized();
+            const VectorD cross = to_next.cross(to_last);
+            computed[corners[i]] += cross.normalized() * std::atan2(cross.length(), to_next.dot(to_last));
+        }
+    }
+    mesh.normals.resize(mesh.positions.size(), VectorD(0.0));
+    for (std::size_t i = 0; i < computed.size(); ++i)
+        if (mesh.normals[i] == VectorD(0.0)) mesh.normals[i] = computed[i].normalized();
+}
+
+namespace {
+
+/// Which corners of a triangle have (0, 0), (1, 0) and (0, 1).
+using CornerOrder = std::array<int, 3>;
+
+/// Gives the triangles whose corners have none the barycentric coordinates of their second and third corner, as Mitsuba
+/// does. Their vertices are then shared no more.
+void add_barycentric_coordinates(MeshDescription& mesh, const CornerOrder& order) {
+    if (mesh.texture_coordinates.empty())
+        mesh.texture_coordinates.resize(mesh.positions.size(), Imath::V2d(std::numeric_limits<double>::quiet_NaN()));
+    for (auto& triangle : mesh.triangles) {
+        if (!std::isnan(mesh.texture_coordinates[triangle.x].x)) continue;
+        for (int i = 0; i < 3; ++i) {
+            std::uint32_t& vertex = triangle[order[static_cast<std::size_t>(i)]];
+            const auto own = static_cast<std::uint32_t>(mesh.positions.size());
+            mesh.positions.push_back(VectorD(mesh.positions[vertex]));
+            if (!mesh.normals.empty()) mesh.normals.push_back(VectorD(mesh.normals[vertex]));
+            mesh.texture_coordinates.emplace_back(i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0);
+            vertex = own;
+        }
+    }
+}
+
+/// For triangles that were turned: Mitsuba exchanges other corners than turn() does, 3 the first and last, 0.6 the
+/// first and second, and those only where it does not turn vertex normals instead.
+CornerOrder corner_order(MitsubaFamily family, bool is_turned, bool face_normals) {
+    if (!is_turned) return {0, 1, 2};
+    if (family == MitsubaFamily::Version3) return {1, 2, 0};
+    return face_normals ? CornerOrder{2, 0, 1} : CornerOrder{0, 2, 1};
+}
+
+/// In Mitsuba the normals of vertices, where a mesh has them, say which side of it is which; here that is the order of
+/// a triangle's corners.
+void turn_to_normals(MeshDescription& mesh) {
+    for (auto& triangle : mesh.triangles) {
+        const VectorD& corner = mesh.positions[triangle.x];
+        const VectorD side = (mesh.positions[triangle.y] - corner).cross(mesh.positions[triangle.z] - corner);
+        const VectorD normal = mesh.normals[triangle.x] + mesh.normals[triangle.y] + mesh.normals[triangle.z];
+        if (side.dot(normal) < 0.0) turn(triangle);
+    }
+}
+
+}  // namespace
+
+MeshDescription place_mesh(MeshDescription mesh, const ShapeReader& reader, bool face_normals) {
+    const Matrix& to_world = reader.to_world;
+    for (VectorD& position : mesh.positions) position = transform_point(to_world, position);
+    for (VectorD& normal : mesh.normals)
+        if (normal != VectorD(0.0)) normal = transform_normal(to_world, reader.flip_normals ? -normal : normal);
+    const bool is_turned = reader.is_version_06() ? reader.flip_normals : reader.turns_triangles();
+    if (is_turned) std::for_each(mesh.triangles.begin(), mesh.triangles.end(), turn);
+    if (!face_normals) fill_in_normals(mesh);
+    if (reader.has_texture)
+        add_barycentric_coordinates(mesh, corner_order(reader.element.family(), is_turned, face_normals));
+    for (Imath::V2d& uv : mesh.texture_coordinates)
+        if (std::isnan(uv.x)) uv = Imath::V2d(0.0);  // no triangle's, or seen by no texture
+    if (!mesh.normals.empty()) turn_to_normals(mesh);
+    return mesh;
+}
+
+}  // namespace photonlab

@@ -1,0 +1,18 @@
+// What the readers of mesh files share: from a file's vertices to the world.
+
+#pragma once
+
+#include "scene/shapes/shape_reader.h"
+
+namespace photonlab {
+
+/// Computes the normals that are not there, as Mitsuba does: face normals weighted by the angle at the vertex.
+/// [Thuermer & Wuethrich 1998, "Computing Vertex Normals from Polygonal Facets"]
+void fill_in_normals(MeshDescription& mesh);
+
+/// Takes the mesh to the world, where normals that the file does not give (none, or 0) are computed, and texture
+/// coordinates that it does not give (none, or not a number) made up where its material needs some. A mirroring turns a
+/// mesh without normals inside out in 0.6, and not in 3.
+MeshDescription place_mesh(MeshDescription mesh, const ShapeReader& reader, bool face_normals);
+
+}  // namespace photonlab

@@ -1,0 +1,46 @@
+#include "scene/textures/scale.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "scene/mitsuba/plugin.h"
+#include "scene/textures/texture.h"
+
+namespace photonlab {
+
+Color Scale::color_at(const Imath::V2f& texture_coordinate) const {
+    return nested ? photonlab::color_at(nested->texture, texture_coordinate) * factor : factor;
+}
+
+TextureGradient Scale::gradient_at(const Imath::V2f& texture_coordinate) const {
+    if (!nested) return {};
+    TextureGradient gradient = photonlab::gradient_at(nested->texture, texture_coordinate);
+    gradient.by_u *= ColorD(factor);
+    gradient.by_v *= ColorD(factor);
+    return gradient;
+}
+
+Scale Scale::read(Plugin& plugin) {
+    Scale scale{.nested = nullptr, .factor = Color(plugin.properties.reflectance("scale").value_or(ColorD(1.0)))};
+    if (const auto value = plugin.properties.reflectance("value")) scale.factor *= Color(*value);
+    const auto& objects = plugin.properties.objects();
+    if (objects.size() + (plugin.properties.has("value") ? 1 : 0) != 1)
+        throw InputError(plugin.element.place, "scale: expected one texture, or one colour called value");
+    if (objects.empty()) return scale;
+    const XmlElement& inner = plugin.source.resolve(*objects.front());
+    if (inner.tag != "texture" || &inner == &plugin.element)
+        throw InputError(objects.front()->place, fmt::format("scale: expected a texture, got <{}>", inner.tag));
+    scale.nested =
+        std::make_shared<const NestedTexture>(NestedTexture{read_texture(inner, plugin.source, TextureUse::Number)});
+    return scale;
+}
+
+/// The largest value is not known of every texture, so a factor above 1 is checked with that texture's own limit.
+void Scale::check(const std::string& place) const {
+    if (nested) require_reflectance(nested->texture, place);
+    if (!is_finite(factor) || std::min({factor.x, factor.y, factor.z}) < 0.0f || max_channel(factor) > 1.0f)
+        throw InputError(place, fmt::format("scale: expected a factor in [0, 1] on a reflectance, got {} {} {}",
+                                            factor.x, factor.y, factor.z));
+}
+
+}  // namespace photonlab

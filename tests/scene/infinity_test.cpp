@@ -1,0 +1,238 @@
+// Light from infinity: where an image of the surroundings stands, how it is drawn, and that photons and connections
+// bring the irradiance of closed forms, whatever lies around the scene.
+//
+// Means are compared within 4.5 standard errors, which chance exceeds with 7e-6; seeds are fixed.
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "scene/emitter.h"
+#include "tests/scene/described.h"
+#include "tests/scene/scene_folder.h"
+#include "tests/support/chi_square.h"
+
+namespace photonlab {
+namespace {
+
+using Rows = EnvironmentImage::Rows;
+
+ColorImage black(int width, int height) {
+    return {width, height, std::vector<Color>(static_cast<std::size_t>(width * height), Color(0.0f))};
+}
+
+/// Towards (u, v) of the image: u = atan2(x, -z) / (2 pi), v = acos(y) / pi.
+VectorD towards(double u, double v) {
+    return {std::sin(pi * v) * std::sin(2.0 * pi * u), std::cos(pi * v), -std::sin(pi * v) * std::cos(2.0 * pi * u)};
+}
+
+TEST(EnvironmentImages, HaveOneBrightTexelWhereMitsubaHasIt) {
+    ColorImage image = black(8, 5);
+    image.pixels[3 * 8 + 6] = Color(2.0f, 4.0f, 8.0f);  // row 3, column 6
+    const EnvironmentImage old(image, Rows::Centred);
+    const EnvironmentImage current(image, Rows::FromPoleToPole);
+    const auto at = [](const EnvironmentImage& map, double u, double v) { return map.radiance(towards(u, v)).y; };
+    EXPECT_NEAR(at(old, 6.5 / 8, 3.5 / 5), 4.0, 1e-9);
+    EXPECT_NEAR(at(current, 6.5 / 8, 3.0 / 4), 4.0, 1e-9);
+    EXPECT_NEAR(at(old, 7.0 / 8, 3.5 / 5), 2.0, 1e-9) << "half a column to the right";
+    EXPECT_NEAR(at(old, 6.5 / 8, 3.0 / 5), 2.0, 1e-9) << "half a row up";
+    EXPECT_NEAR(at(current, 6.5 / 8, 2.5 / 4), 2.0, 1e-9);
+    EXPECT_EQ(at(old, 5.4 / 8, 3.5 / 5), 0.0);
+    EXPECT_EQ(at(current, 6.5 / 8, 1.99 / 4), 0.0);
+}
+
+TEST(EnvironmentImages, GoAroundAndReachThePoles) {
+    ColorImage image = black(4, 3);
+    image.pixels[1 * 4 + 0] = Color(1.0f);
+    image.pixels[0 * 4 + 1] = Color(3.0f);
+    const EnvironmentImage old(image, Rows::Centred);
+    EXPECT_NEAR(old.radiance(towards(0.0, 0.5)).x, 0.5, 1e-9) << "between the last column and the first";
+    EXPECT_NEAR(old.radiance(towards(1.5 / 4, 0.05)).x, 3.0, 1e-9) << "above the middle of the first row";
+    const EnvironmentImage current(image, Rows::FromPoleToPole);
+    EXPECT_NEAR(current.radiance(towards(1.5 / 4, 1e-6)).x, 3.0, 1e-4);
+}
+
+class EnvironmentDensity : public ::testing::TestWithParam<Rows> {};
+INSTANTIATE_TEST_SUITE_P(Both, EnvironmentDensity, ::testing::Values(Rows::Centred, Rows::FromPoleToPole));
+
+TEST_P(EnvironmentDensity, IsThatOfItsSamplesAndCoversWhatShines) {
+    ColorImage image = black(16, 9);
+    for (int i = 0; i < 16 * 9; ++i) image.pixels[static_cast<std::size_t>(i)] = Color(0.1f + 0.01f * ((i * 7) % 13));
+    image.pixels[2 * 16 + 15] = Color(20.0f);
+    image.pixels[0] = Color(0.0f);
+    const EnvironmentImage map(image, GetParam());
+    RandomStream random = test_stream();
+    expect_distributed(
+        [&] {
+            const VectorD direction = map.sample(random.next_2d());
+            return std::pair(direction.y, turn_to(-direction.z, direction.x));
+        },
+        [&](double y, double u) { return map.density(towards(u, std::acos(y) / pi)) * 2.0 * pi; }, -1.0, 1.0, 0.0, 1.0,
+        200'000, 64);
+    for (int i = 0; i < 2000; ++i) {
+        const VectorD direction = VectorD(sample_unit_sphere(random.next_2d())).normalized();
+        if (map.radiance(direction).x > 0.0) EXPECT_GT(map.density(direction), 0.0);
+    }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+constexpr double floor_size = 8.0;
+
+/// A floor of 8 x 8 around the origin that faces up (+z), and what else there is.
+SceneDescription open_floor(LightDescription light, bool on_a_plain = false) {
+    SceneDescription description = describe({floor_of_eight()});
+    description.lights = {std::move(light)};
+    description.materials[0].two_sided = false;
+    description.camera.to_world[3][2] = 5.0;
+    if (on_a_plain) description.shapes.push_back(shape(square({0, 0, -3}, {4e6, 0, 0}, {0, 4e6, 0})));
+    return description;
+}
+
+/// Irradiance on the floor's upper side by photons that come straight from the light: mean and standard error.
+std::pair<double, double> irradiance_by_photons(const Scene& scene, int paths) {
+    RandomStream random = test_stream();
+    double sum = 0.0, squares = 0.0;
+    for (int i = 0; i < paths; ++i) {
+        const Imath::V2f u = random.next_2d();
+        const double u_triangle = random.next_double();
+        const EmissionSample emission = sample_emission(scene, 0, u, u_triangle, random.next_2d());
+        const auto hit = intersect(scene, emission.ray);
+        const bool arrives = hit && hit->shape == 0 && emission.ray.direction.z < 0.0f;
+        const double value = arrives ? static_cast<double>(emission.weight.y) : 0.0;
+        sum += value;
+        squares += value * value;
+    }
+    const double area = floor_size * floor_size / (scene.unit_length * scene.unit_length);
+    const double scale = scene.total_power / area;
+    const double mean = sum / paths;
+    return {mean * scale, scale * std::sqrt((squares / paths - mean * mean) / paths)};
+}
+
+std::pair<double, double> irradiance_by_connections(const Scene& scene, int samples) {
+    RandomStream random = test_stream();
+    double sum = 0.0, squares = 0.0;
+    const Vector receiver = to_box(scene, {1.0, 2.0, 0.0});
+    for (int i = 0; i < samples; ++i) {
+        const Imath::V2f u = random.next_2d();
+        const auto light = sample_direct(scene, 0, receiver, u, random.next_double());
+        const bool arrives =
+            light && light->direction.z > 0.0f &&
+            !is_occluded(scene, {offset_from_surface(receiver, {0, 0, 1}, light->direction), light->position});
+        const double value = arrives ? light->radiance.y * light->direction.z / light->density : 0.0;
+        sum += value;
+        squares += value * value;
+    }
+    const double mean = sum / samples;
+    return {mean, std::sqrt(std::max(0.0, squares / samples - mean * mean) / samples)};
+}
+
+void expect_irradiance(const SceneDescription& description, double expected) {
+    const Scene scene = build_scene(description);
+    for (const auto& [mean, error] :
+         {irradiance_by_photons(scene, 200'000), irradiance_by_connections(scene, 100'000)}) {
+        EXPECT_NEAR(mean, expected, 4.5 * error + 2e-5 * expected);
+        EXPECT_LT(error, 0.01 * expected) << "too noisy to see an error";
+    }
+}
+
+TEST(LightFromInfinity, OfOneColourGivesPiTimesItsRadiance) {
+    for (const bool on_a_plain : {false, true})
+        expect_irradiance(open_floor(ConstantDescription{.radiance = ColorD(2.0), .place = "test:1"}, on_a_plain),
+                          2.0 * pi);
+}
+
+TEST(LightFromInfinity, FromOneDirectionGivesItsCosine) {
+    for (const bool on_a_plain : {false, true})
+        expect_irradiance(open_floor(
+                              DirectionalDescription{
+                                  .direction = VectorD(0.6, 0, -0.8), .irradiance = ColorD(3.0), .place = "test:1"},
+                              on_a_plain),
+                          3.0 * 0.8);
+}
+
+// A sky that is 1 in the upper half and dark below: local y is turned to the world's z.
+TEST(LightFromInfinity, FromAnImageGivesWhatShinesOnTheFloor) {
+    ColorImage image = black(64, 33);
+    for (std::size_t i = 0; i < 64 * 16; ++i) image.pixels[i] = Color(1.0f);
+    const auto sky = std::make_shared<const EnvironmentImage>(image, Rows::FromPoleToPole);
+    const TextureAxes axes{VectorD(1, 0, 0), VectorD(0, 0, 1), VectorD(0, -1, 0)};
+    // From the row at the horizon, which is dark, to the one above it, at 1/32 of a half turn, it rises linearly:
+    // E = 2 pi (integral of L cos sin): half of it without that band is 0.5 cos^2 of it.
+    const double band = pi / 32.0;
+    double in_band = 0.0;
+    for (int i = 0; i < 1000; ++i) {
+        const double above = band * (i + 0.5) / 1000.0;
+        in_band += above / band * std::sin(above) * std::cos(above) * band / 1000.0;
+    }
+    const double expected = 2.0 * pi * (0.5 * std::cos(band) * std::cos(band) + in_band);
+    for (const bool on_a_plain : {false, true})
+        expect_irradiance(
+            open_floor(EnvironmentMapDescription{.image = sky, .axes = axes, .place = "test:1"}, on_a_plain), expected);
+}
+
+TEST(LightFromInfinity, IsSeenByRaysThatLeaveTheScene) {
+    ColorImage image = black(8, 5);
+    image.pixels[2 * 8 + 2] = Color(5.0f);  // towards +x
+    const auto sky = std::make_shared<const EnvironmentImage>(image, Rows::FromPoleToPole);
+    const Scene scene =
+        build_scene(open_floor(EnvironmentMapDescription{.image = sky, .scale = 2.0, .place = "test:1"}));
+    ASSERT_TRUE(scene.environment);
+    const Vector centre(towards(2.5 / 8, 0.5));
+    EXPECT_NEAR(escaped_radiance(scene, centre).x, 10.0, 1e-4);
+    EXPECT_EQ(escaped_radiance(scene, -centre), ColorD(0.0));
+    EXPECT_EQ(escaped_radiance(build_scene(describe({floor_of_eight()})), centre), ColorD(0.0));
+}
+
+TEST(LightFromInfinity, AroundTheSceneIsOnce) {
+    SceneDescription description = open_floor(ConstantDescription{.radiance = ColorD(1.0), .place = "test:1"});
+    description.lights.push_back(ConstantDescription{.radiance = ColorD(1.0), .place = "test:2"});
+    EXPECT_THROW(build_scene(description), InputError);
+}
+
+TEST(UnitBox, IsMadeForWhatStandsOnAPlain) {
+    SceneDescription description = open_floor(ConstantDescription{.radiance = ColorD(1.0), .place = "test:1"}, true);
+    EXPECT_NEAR(build_scene(description).unit_length, floor_size, 1e-9);
+    EXPECT_EQ(build_scene(description).notes.size(), 1u);
+    description.camera.to_world[3][2] = 5e6;  // from there the plain is what is seen
+    EXPECT_NEAR(build_scene(description).unit_length, 8e6, 1.0);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+class LightsInFiles : public SceneFolderTest {};
+
+TEST_F(LightsInFiles, AreReadWithTheirNamesInBothFamilies) {
+    const std::string lights =
+        "<emitter type='directional'><vector name='direction' x='0' y='0' z='-2'/>"
+        "<rgb name='irradiance' value='3'/><float name='NAME' value='4'/></emitter>";
+    for (const auto& [version, name] : {std::pair("0.6.0", "samplingWeight"), std::pair("3.0.0", "sampling_weight")}) {
+        std::string text = lights;
+        text.replace(text.find("NAME"), 4, name);
+        const auto scene = load_as(version, text);
+        const auto& light = std::get<DirectionalDescription>(scene.lights.at(0));
+        EXPECT_EQ(light.direction, VectorD(0, 0, -1));
+        EXPECT_EQ(light.irradiance, ColorD(3.0));
+        EXPECT_EQ(light.sampling_weight, 4.0);
+    }
+}
+
+TEST_F(LightsInFiles, AreChosenByTheirSamplingWeight) {
+    const auto description = load_as("3.0.0",
+                                     "<shape type='rectangle'/>"
+                                     "<emitter type='point'><float name='sampling_weight' value='3'/></emitter>"
+                                     "<emitter type='point'/>");
+    const Scene scene = build_scene(description);
+    EXPECT_NEAR(scene.emitters[0].choice_probability, 0.75, 1e-12);
+    EXPECT_NEAR(scene.emitters[0].photon_power.x * 0.75 + scene.emitters[1].photon_power.x * 0.25, 1.0, 1e-6);
+}
+
+TEST_F(LightsInFiles, OfTheSkyAreRefusedWithTheWayRound) {
+    for (const std::string kind : {"sky", "sun", "sunsky"})
+        EXPECT_EQ(message_of("<scene version='0.6.0'>\n<emitter type='" + kind + "'/></scene>"),
+                  "scene.xml:2: emitter \"" + kind +
+                      "\": models of the sky are not built in; an image of it can light the scene: <emitter "
+                      "type=\"envmap\"> with a filename");
+}
+
+}  // namespace
+}  // namespace photonlab

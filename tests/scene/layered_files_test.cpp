@@ -1,0 +1,332 @@
+// Rough and layered materials, textures and films as scene files have them, in the spelling of 0.6 and of 3.
+
+#include <gtest/gtest.h>
+
+#include "image/png.h"
+#include "scene/scene.h"
+#include "tests/scene/described.h"
+#include "tests/scene/scene_folder.h"
+
+namespace photonlab {
+namespace {
+
+/// The image whose bytes these are, three a pixel.
+void write_bytes(const std::filesystem::path& file, int width, int height, const std::vector<std::uint8_t>& bytes) {
+    std::vector<ColorD> pixels;
+    for (std::size_t i = 0; i + 2 < bytes.size(); i += 3)
+        pixels.emplace_back(srgb_to_linear(bytes[i] / 255.0), srgb_to_linear(bytes[i + 1] / 255.0),
+                            srgb_to_linear(bytes[i + 2] / 255.0));
+    write_png(file, width, height, pixels);
+}
+
+class LayeredFiles : public SceneFolderTest {
+protected:
+    Material material(const std::string& version, const std::string& bsdf) const {
+        const auto scene = load_as(version, "<shape type='rectangle'>" + bsdf + "</shape>");
+        return scene.materials.at(scene.shapes.at(0).material);
+    }
+    template <typename Kind>
+    Kind bsdf(const std::string& version, const std::string& text) const {
+        return std::get<Kind>(material(version, text).bsdf);
+    }
+    std::string refusal_of(const std::string& version, const std::string& bsdf) const {
+        return message_of("<scene version='" + version + "'><sensor type='perspective'/>\n" + bsdf + "</scene>");
+    }
+};
+
+TEST_F(LayeredFiles, HaveMitsubasDefaults) {
+    const auto old_metal = bsdf<RoughConductor>("0.6.0", "<bsdf type='roughconductor'/>");
+    EXPECT_EQ(old_metal.facets.slopes, FacetSlopes::Beckmann);
+    EXPECT_EQ(old_metal.facets.alpha, 0.1f);
+    EXPECT_NEAR(old_metal.eta.x, 0.200438 / 1.000277, 1e-6) << "copper in air";
+    EXPECT_EQ(bsdf<RoughConductor>("3.0.0", "<bsdf type='roughconductor'/>").eta, Color(0.0f)) << "a white mirror";
+    for (const std::string version : {"0.6.0", "3.0.0"}) {
+        EXPECT_NEAR(bsdf<Plastic>(version, "<bsdf type='plastic'/>").index_inside, 1.49f, 1e-6f);
+        EXPECT_NEAR(bsdf<RoughPlastic>(version, "<bsdf type='roughplastic'/>").index_inside, 1.49f, 1e-6f);
+        EXPECT_NEAR(bsdf<RoughDielectric>(version, "<bsdf type='roughdielectric'/>").index_beyond, 1.5046f, 1e-6f);
+        EXPECT_NEAR(bsdf<ThinDielectric>(version, "<bsdf type='thindielectric'/>").index_inside, 1.5046f, 1e-6f);
+        EXPECT_EQ(bsdf<Mask>(version, "<bsdf type='mask'><bsdf type='diffuse'/></bsdf>").opacity, Color(0.5f));
+    }
+    EXPECT_EQ(bsdf<Phong>("0.6.0", "<bsdf type='phong'/>").specular_reflectance, Color(0.2f));
+}
+
+TEST_F(LayeredFiles, MeanTheSameInBothSpellings) {
+    const auto same = [&](const std::string& old_text, const std::string& text) {
+        const Bsdf a = material("0.6.0", old_text).bsdf;
+        const Bsdf b = material("3.0.0", text).bsdf;
+        ASSERT_EQ(a.index(), b.index());
+        const Vector out = Vector(0.3f, -0.2f, 0.9f).normalized();
+        for (const Vector in : {Vector(-0.3f, 0.2f, 0.9f), Vector(0.1f, 0.5f, 0.4f), Vector(0.2f, 0.1f, -0.8f)}) {
+            const Vector unit = in.normalized();
+            EXPECT_EQ(evaluate(a, out, unit), evaluate(b, out, unit));
+            EXPECT_EQ(density(a, out, unit), density(b, out, unit));
+        }
+    };
+    same(
+        "<bsdf type='roughconductor'><string name='material' value='Au'/><float name='extEta' value='1'/><string "
+        "name='distribution' value='ggx'/><float name='alpha' value='0.3'/></bsdf>",
+        "<bsdf type='roughconductor'><string name='material' value='Au'/><string name='distribution' value='ggx'/>"
+        "<float name='alpha' value='0.3'/></bsdf>");
+    same(
+        "<bsdf type='roughdielectric'><float name='intIOR' value='1.5'/><string name='extIOR' value='air'/>"
+        "<float name='alphaU' value='0.2'/><float name='alphaV' value='0.2'/></bsdf>",
+        "<bsdf type='roughdielectric'><float name='int_ior' value='1.5'/><string name='ext_ior' value='air'/>"
+        "<float name='alpha' value='0.2'/></bsdf>");
+    same("<bsdf type='mask'><rgb name='opacity' value='0.3'/><bsdf type='diffuse'/></bsdf>",
+         "<bsdf type='mask'><float name='opacity' value='0.3'/><bsdf type='diffuse'/></bsdf>");
+    same(
+        "<bsdf type='blendbsdf'><float name='weight' value='0.3'/><bsdf type='diffuse'/><bsdf type='roughconductor'>"
+        "<float name='extEta' value='1'/><string name='material' value='Al'/></bsdf></bsdf>",
+        "<bsdf type='blendbsdf'><float name='weight' value='0.3'/><bsdf type='diffuse'/><bsdf type='roughconductor'>"
+        "<string name='material' value='Al'/></bsdf></bsdf>");
+}
+
+// In 0.6 the weights of a mixture are of its nested materials in their order, and what lacks to 1 is black.
+TEST_F(LayeredFiles, MixTheirPartsByTheirWeights) {
+    const std::string parts =
+        "<bsdf type='diffuse'><rgb name='reflectance' value='1 0 0'/></bsdf><bsdf type='diffuse'><rgb "
+        "name='reflectance' value='0 1 0'/></bsdf><bsdf type='diffuse'><rgb name='reflectance' value='0 0 1'/></bsdf>";
+    const auto f = [&](const std::string& weights) {
+        const Material mixed = material(
+            "0.6.0", "<bsdf type='mixturebsdf'><string name='weights' value='" + weights + "'/>" + parts + "</bsdf>");
+        return evaluate(bsdf_at(mixed, {0, 0}, false), {0, 0, 1}, {0, 0, 1}) * static_cast<float>(pi);
+    };
+    const auto near = [](const Color& a, const Color& b) {
+        for (int i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], 1e-6f);
+    };
+    near(f("0.2, 0.3, 0.1"), {0.2f, 0.3f, 0.1f});
+    near(f("1 2 1"), {0.25f, 0.5f, 0.25f});
+    near(f("0 0 0"), {0.0f, 0.0f, 0.0f});
+    EXPECT_EQ(refusal_of("0.6.0", "<bsdf type='mixturebsdf'><string name='weights' value='1'/>" + parts + "</bsdf>"),
+              "scene.xml:2: mixturebsdf: expected 1 nested bsdf, got 3");
+}
+
+TEST_F(LayeredFiles, OfTwoSidesShowEachItsOwn) {
+    const Material both = material("3.0.0",
+                                   "<bsdf type='twosided'><bsdf type='diffuse'><rgb name='reflectance' value='1 0 "
+                                   "0'/></bsdf><bsdf type='plastic'/></bsdf>");
+    EXPECT_TRUE(std::holds_alternative<Diffuse>(bsdf_at(both, {0, 0}, false)));
+    EXPECT_TRUE(std::holds_alternative<Plastic>(bsdf_at(both, {0, 0}, true)));
+    EXPECT_TRUE(may_be_specular(both));
+    EXPECT_TRUE(both.two_sided);
+}
+
+TEST_F(LayeredFiles, ReadPastWhatIsOtherPrograms) {
+    const auto scene = load_as("0.6.0",
+                               "<shape type='rectangle'><boolean name='caustic_caster' value='true'/><bsdf "
+                               "type='dielectric'><float name='alpha' value='0.1'/></bsdf></shape>");
+    ASSERT_GE(scene.notes.size(), 2u);
+    EXPECT_NE(scene.notes[0].find("bsdf \"dielectric\": not read: alpha: it is smooth"), std::string::npos)
+        << scene.notes[0];
+    EXPECT_NE(scene.notes[1].find("shape \"rectangle\": not read: caustic_caster"), std::string::npos)
+        << scene.notes[1];
+}
+
+TEST_F(LayeredFiles, NameTheNearestKnownThing) {
+    EXPECT_NE(refusal_of("3.0.0", "<bsdf type='roughconductr'/>")
+                  .find("unknown bsdf \"roughconductr\"; did you mean "
+                        "\"roughconductor\"? Known here: "),
+              std::string::npos);
+    EXPECT_NE(refusal_of("3.0.0", "<bsdf type='plastic'><float name='int_io' value='1'/></bsdf>")
+                  .find("unknown property \"int_io\" of bsdf \"plastic\"; did you mean \"int_ior\"?"),
+              std::string::npos);
+    EXPECT_NE(refusal_of("3.0.0", "<medium type='homogeneous'/>").find("scene.xml:2: participating media"),
+              std::string::npos);
+    EXPECT_EQ(refusal_of("3.0.0",
+                         "<bsdf type='roughconductor'>\n<float name='alpha_u' value='0.1'/>\n<float "
+                         "name='alpha_v' value='0.2'/></bsdf>"),
+              "scene.xml:3: alpha_u: expected the same as alpha_v, got 0.1 and 0.2: roughness that depends on the "
+              "direction is not known here");
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Textures
+
+class TexturesInFiles : public LayeredFiles {
+protected:
+    /// 2 x 1 pixels: black and white.
+    void write_image() const { write_bytes(folder_ / "two.png", 2, 1, {0, 0, 0, 255, 255, 255}); }
+
+    Texture texture(const std::string& version, const std::string& plugin) const {
+        write_image();
+        const Material found = material(version, "<bsdf type='diffuse'>" + plugin + "</bsdf>");
+        return *found.textures.at(0).texture;
+    }
+    float value(const std::string& version, const std::string& type, const std::string& inside, float u) const {
+        return color_at(texture(version, "<texture type='" + type + "' name='reflectance'>" + inside + "</texture>"),
+                        {u, 0.5f})
+            .x;
+    }
+};
+
+const std::string two = "<string name='filename' value='two.png'/>";
+
+TEST_F(TexturesInFiles, WrapAndFilterAsTheySay) {
+    const auto wrapped = [&](const std::string& mode, float u) {
+        return value("3.0.0", "bitmap", two + "<string name='wrap_mode' value='" + mode + "'/>", u);
+    };
+    EXPECT_NEAR(wrapped("repeat", 0.25f), 0.0, 1e-6);
+    EXPECT_NEAR(wrapped("repeat", 0.75f), 1.0, 1e-6);
+    EXPECT_NEAR(wrapped("repeat", 1.25f), 0.0, 1e-6);
+    EXPECT_NEAR(wrapped("repeat", 0.0f), 0.5, 1e-6) << "between the last pixel and the first";
+    EXPECT_NEAR(wrapped("clamp", 0.0f), 0.0, 1e-6);
+    EXPECT_NEAR(wrapped("clamp", 7.0f), 1.0, 1e-6);
+    EXPECT_NEAR(wrapped("clamp", -7.0f), 0.0, 1e-6);
+    EXPECT_NEAR(wrapped("mirror", 1.25f), 1.0, 1e-6);
+    EXPECT_NEAR(wrapped("mirror", 1.75f), 0.0, 1e-6);
+    EXPECT_NEAR(wrapped("mirror", -0.25f), 0.0, 1e-6);
+    const std::string nearest = two + "<string name='filter_type' value='nearest'/>";
+    EXPECT_EQ(value("3.0.0", "bitmap", nearest, 0.49f), 0.0f);
+    EXPECT_EQ(value("3.0.0", "bitmap", nearest, 0.51f), 1.0f);
+    EXPECT_EQ(value("0.6.0", "bitmap", two + "<string name='wrapModeU' value='one'/>", 5.0f), 1.0f);
+    EXPECT_EQ(value("0.6.0", "bitmap", two + "<string name='wrapMode' value='zero'/>", 5.0f), 0.0f);
+}
+
+TEST_F(TexturesInFiles, AreDecodedByTheirGamma) {
+    write_bytes(folder_ / "grey.png", 1, 1, {128, 128, 128});
+    const auto decoded = [&](const std::string& gamma) {
+        return value("0.6.0", "bitmap",
+                     "<string name='filename' value='grey.png'/><float name='gamma' value='" + gamma + "'/>", 0.5f);
+    };
+    EXPECT_NEAR(decoded("1"), 128.0 / 255.0, 1e-6);
+    EXPECT_NEAR(decoded("2.2"), std::pow(128.0 / 255.0, 2.2), 1e-6);
+    EXPECT_NEAR(decoded("0"), srgb_to_linear(128.0 / 255.0), 1e-6);
+    EXPECT_NEAR(decoded("-1"), srgb_to_linear(128.0 / 255.0), 1e-6);
+}
+
+TEST_F(TexturesInFiles, ShareTheImagesThatTheyLookUp) {
+    write_image();
+    const std::string bsdf =
+        "<bsdf type='diffuse'><texture type='bitmap' name='reflectance'>" + two + "</texture></bsdf>";
+    const auto scene =
+        load_as("3.0.0", "<shape type='sphere'>" + bsdf + "</shape><shape type='sphere'>" + bsdf + "</shape>");
+    const auto image = [&](std::size_t i) {
+        return std::get<Bitmap>(*scene.materials.at(i).textures.at(0).texture).image;
+    };
+    EXPECT_EQ(image(0), image(1));
+}
+
+// checkerboard.cpp of 3 has color0 where the halves differ, that of 0.6 where they do not.
+TEST_F(TexturesInFiles, HaveEachFamilysCheckerboard) {
+    const auto at = [&](const std::string& version, float u, float v) {
+        return color_at(texture(version, "<texture type='checkerboard' name='reflectance'/>"), {u, v}).x;
+    };
+    EXPECT_EQ(at("0.6.0", 0.25f, 0.25f), 0.4f);
+    EXPECT_EQ(at("0.6.0", 0.75f, 0.25f), 0.2f);
+    EXPECT_EQ(at("3.0.0", 0.25f, 0.25f), 0.2f);
+    EXPECT_EQ(at("3.0.0", 0.75f, 0.25f), 0.4f);
+    EXPECT_EQ(at("3.0.0", 0.75f, -0.75f), 0.4f);
+}
+
+TEST_F(TexturesInFiles, AreScaled) {
+    write_image();
+    EXPECT_NEAR(value("0.6.0", "scale",
+                      "<float name='scale' value='0.25'/><texture type='bitmap'>" + two + "</texture>", 0.75f),
+                0.25, 1e-6);
+    EXPECT_NEAR(value("0.6.0", "scale", "<rgb name='value' value='0.5'/><rgb name='scale' value='0.5'/>", 0.75f), 0.25,
+                1e-6);
+}
+
+TEST_F(TexturesInFiles, GiveRoughnessOpacityAndWeight) {
+    write_image();
+    const std::string map = "<texture type='bitmap' name='NAME'>" + two + "</texture>";
+    const auto named = [&](const std::string& name) {
+        std::string text = map;
+        return text.replace(text.find("NAME"), 4, name);
+    };
+    const Material rough = material("3.0.0", "<bsdf type='roughconductor'>" + named("alpha") + "</bsdf>");
+    EXPECT_EQ(std::get<RoughConductor>(bsdf_at(rough, {0.75f, 0.5f}, false)).facets.alpha, 1.0f);
+    EXPECT_EQ(std::get<RoughConductor>(bsdf_at(rough, {0.25f, 0.5f}, false)).facets.alpha, smallest_roughness);
+    const Material mask = material("0.6.0", "<bsdf type='mask'>" + named("opacity") + "<bsdf type='diffuse'/></bsdf>");
+    EXPECT_FALSE(is_scattering(bsdf_at(mask, {0.25f, 0.5f}, false)));
+    EXPECT_FALSE(is_specular(bsdf_at(mask, {0.75f, 0.5f}, false)));
+    EXPECT_TRUE(is_specular(mask.bsdf) && is_scattering(mask.bsdf)) << "before it is known where";
+    const Material blend = material(
+        "3.0.0", "<bsdf type='blendbsdf'>" + named("weight") + "<bsdf type='diffuse'/><bsdf type='conductor'/></bsdf>");
+    EXPECT_TRUE(is_specular(bsdf_at(blend, {0.75f, 0.5f}, false)));
+    EXPECT_FALSE(is_specular(bsdf_at(blend, {0.25f, 0.5f}, false)));
+    const Material inside =
+        material("3.0.0", "<bsdf type='mask'><bsdf type='diffuse'>" + named("reflectance") + "</bsdf></bsdf>");
+    EXPECT_TRUE(needs_texture_coordinates(inside));
+    const Bsdf white = bsdf_at(inside, {0.75f, 0.5f}, false);
+    EXPECT_NEAR(evaluate(white, {0, 0, 1}, {0, 0, 1}).x, 0.5 / pi, 1e-6);
+}
+
+// Heights that rise linearly with u by h per unit of it, on a square whose u runs over 2 scene units: the normal leans
+// back by h / 2. A ramp of 64 pixels from 0 to 1, times 0.5.
+TEST_F(TexturesInFiles, OfHeightsTurnTheNormal) {
+    std::vector<std::uint8_t> ramp;
+    for (int i = 0; i < 64; ++i) ramp.insert(ramp.end(), 3, static_cast<std::uint8_t>(4 * i));
+    write_bytes(folder_ / "ramp.png", 64, 1, ramp);
+    const double slope = 64.0 * 4.0 / 255.0 * 0.5 / 2.0;  // of height by u, over the two units
+    for (const std::string bumped :
+         {"<bsdf type='bumpmap'><texture type='bitmap'><string name='filename' value='ramp.png'/><boolean name='raw' "
+          "value='true'/></texture><float name='scale' value='0.5'/><bsdf type='diffuse'/></bsdf>",
+          "<bsdf type='mask'><bsdf type='bumpmap'><texture type='bitmap'><string name='filename' value='ramp.png'/>"
+          "<boolean name='raw' value='true'/></texture><float name='scale' value='0.5'/><bsdf type='diffuse'/></bsdf>"
+          "</bsdf>"}) {
+        const Scene scene = build_scene(load_as("3.0.0", "<shape type='rectangle'>" + bumped + "</shape>"));
+        const auto hit = intersect(scene, {to_box(scene, {0.1, 0.2, 1.0}), {0, 0, -1}});
+        ASSERT_TRUE(hit);
+        const auto surface = orient(scene, *hit, {0, 0, 1});
+        ASSERT_TRUE(surface);
+        const VectorD expected = VectorD(-slope, 0.0, 1.0).normalized();
+        EXPECT_NEAR(surface->frame.normal.x, expected.x, 1e-4);
+        EXPECT_NEAR(surface->frame.normal.z, expected.z, 1e-4);
+        EXPECT_EQ(surface->geometric_normal, Vector(0, 0, 1));
+    }
+}
+
+TEST_F(TexturesInFiles, OfNormalsAreTheNormal) {
+    write_bytes(folder_ / "normal.png", 1, 1, {204, 128, 230});
+    const Scene scene = build_scene(
+        load_as("3.0.0",
+                "<shape type='rectangle'><bsdf type='normalmap'><texture type='bitmap' name='normalmap'><string "
+                "name='filename' value='normal.png'/><boolean name='raw' value='true'/></texture><bsdf "
+                "type='diffuse'/></bsdf></shape>"));
+    const auto hit = intersect(scene, {to_box(scene, {0.1, 0.2, 1.0}), {0, 0, -1}});
+    const auto surface = orient(scene, hit.value(), {0, 0, 1});
+    const VectorD expected =
+        VectorD(2.0 * 204.0 / 255.0 - 1.0, 2.0 * 128.0 / 255.0 - 1.0, 2.0 * 230.0 / 255.0 - 1.0).normalized();
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(surface.value().frame.normal[i], expected[i], 1e-5);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+// Each pixel of a part of the film sees what that pixel of the whole film sees.
+TEST_F(LayeredFiles, OfCroppedFilmsAreThatPartOfTheFilm) {
+    const auto camera = [&](const std::string& crop) {
+        return build_scene(load("<scene version='0.6.0'><sensor type='perspective'><float name='fov' value='50'/><film "
+                                "type='ldrfilm'><integer name='width' value='40'/><integer name='height' "
+                                "value='30'/>" +
+                                crop + "</film></sensor></scene>"))
+            .camera;
+    };
+    const Camera whole = camera("");
+    const Camera part = camera(
+        "<integer name='cropOffsetX' value='5'/><integer name='cropOffsetY' value='7'/><integer name='cropWidth' "
+        "value='20'/><integer name='cropHeight' value='9'/>");
+    EXPECT_EQ(part.width, 20);
+    EXPECT_EQ(part.height, 9);
+    EXPECT_NEAR(part.pixel_angle, whole.pixel_angle, 1e-12);
+    for (const double x : {0.5, 10.0, 19.5})
+        for (const double y : {0.5, 4.5, 8.5}) {
+            const Vector a = part.direction(x, y);
+            const Vector b = whole.direction(x + 5.0, y + 7.0);
+            for (int i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], 1e-6f);
+        }
+}
+
+TEST_F(LayeredFiles, TakeValuesFromOutsideForTheirNames) {
+    write("scene.xml",
+          "<scene version='3.0.0'><default name='alpha' value='0.1'/><sensor type='perspective'/><shape "
+          "type='rectangle'><bsdf type='roughconductor'><float name='alpha' value='$alpha'/></bsdf></shape></scene>");
+    const SceneDescription plain = load_scene_file(folder_ / "scene.xml");
+    const SceneDescription changed = load_scene_file(folder_ / "scene.xml", {{"alpha", "0.5"}});
+    EXPECT_EQ(std::get<RoughConductor>(changed.materials.at(0).bsdf).facets.alpha, 0.5f);
+    EXPECT_NE(plain.hash, changed.hash);
+    EXPECT_EQ(changed.notes.size(), plain.notes.size() + 1);
+}
+
+}  // namespace
+}  // namespace photonlab
