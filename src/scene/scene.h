@@ -111,12 +111,13 @@ Vector turned_normal(const Shape& shape, const Hit& hit, const NormalTexture& no
 inline std::optional<Surface> orient(const Scene& scene, const Hit& hit, const Vector& outgoing) {
     const std::uint32_t material_index = scene.shapes[hit.shape].material;
     const Material& material = scene.materials[material_index];
-    const Vector shading_normal =
-        material.normals ? turned_normal(scene.shapes[hit.shape], hit, *material.normals) : hit.shading_normal;
     const float geometric = hit.geometric_normal.dot(outgoing);
+    const bool from_back = geometric < 0.0f;
+    const std::optional<NormalTexture>& normals =
+        from_back && material.back ? material.back->normals : material.normals;
+    const Vector shading_normal = normals ? turned_normal(scene.shapes[hit.shape], hit, *normals) : hit.shading_normal;
     const float shading = shading_normal.dot(outgoing);
     if (!(geometric * shading > 0.0f)) return std::nullopt;
-    const bool from_back = geometric < 0.0f;
     if (from_back && !material.two_sided && !is_transmissive(material.bsdf)) return std::nullopt;
     const Bsdf bsdf = bsdf_at(material, hit.texture_coordinate, from_back);
     if (is_black(bsdf)) return std::nullopt;

@@ -336,7 +336,7 @@ TEST(InnerReflectance, IsThatOfTheOutsideByTheIndex) {
         const double outside = inner_reflectance_of(1.0 / index);
         EXPECT_NEAR(1.0 - inner_reflectance_of(index), (1.0 - outside) / (index * index), 2e-6) << index;
     }
-    EXPECT_NEAR(inner_reflectance_of(1.5), 0.596346, 5e-6);  // 1 - (1 - 0.0917780) / 1.5^2 [Walsh's formula]
+    EXPECT_NEAR(inner_reflectance_of(1.5), 0.596346, 5e-6);  // 1 - (1 - 0.0917780) / 1.5^2
     for (const double index : {1.1, 1.33, 1.49, 1.9}) {
         EXPECT_NEAR(fitted_inner_reflectance_of(index) / inner_reflectance_of(index), 1.0, 7e-3) << index;
         EXPECT_NEAR(fitted_inner_reflectance_of(1.0 / index), inner_reflectance_of(1.0 / index), 3e-3) << index;

@@ -87,7 +87,7 @@ TEST(UniformSurround, IsReflectedByItsShare) {
                            expected, 0.05);
             claims.mean_is(
                 what + "ppm with photons",
-                totals(scene, {.radius = gather_radius, .direct = DirectMode::Photons, .photons_per_pass = 40'000}, 4),
+                totals(scene, {.radius = gather_radius, .direct = DirectMode::Photons, .photons_per_pass = 20'000}, 4),
                 expected, 0.05);
             claims.mean_is(what + "photonmapper",
                            totals(scene,
@@ -95,7 +95,7 @@ TEST(UniformSurround, IsReflectedByItsShare) {
                                    .radius = gather_radius,
                                    .caustic_radius = gather_radius,
                                    .direct = DirectMode::Photons,
-                                   .photons_per_pass = 100'000},
+                                   .photons_per_pass = 60'000},
                                   1),
                            expected, 0.05);
         }

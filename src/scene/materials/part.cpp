@@ -1,5 +1,7 @@
 #include "scene/materials/part.h"
 
+#include <algorithm>
+
 #include "scene/materials/material.h"
 
 namespace photonlab {
@@ -46,7 +48,8 @@ bool Part::scatters_through() const {
 }
 
 int Part::most_branches() const {
-    return photonlab::most_branches(material->bsdf);
+    const int in_front = photonlab::most_branches(material->bsdf);
+    return material->back ? std::max(in_front, photonlab::most_branches(material->back->bsdf)) : in_front;
 }
 
 }  // namespace photonlab
