@@ -37,6 +37,8 @@ struct Sphere {
     Roots roots(const VectorD& origin, const VectorD& direction) const;
     void complete(Hit& hit, const Ray& ray, float, float) const;
     std::vector<SurfacePoint> probes() const;
+    double distance_to(const Vector& position) const;
+    std::optional<Vector> whole_within(const Vector& position, double distance) const;
 
     SurfacePoint sample_area(const Imath::V2f& u, double) const;
     /// By the solid angle of the visible cap, whose density is constant; empty from inside, from on it, and where it
