@@ -6,13 +6,13 @@ Student's distribution with one degree less than groups. Beside it stand
 
     asymptote    variance -alpha, squared bias 2 (alpha - 1), MSE -min(alpha, 2 - 2 alpha), where light is smooth
                  [Knaus and Zwicker 2011; Kaplanyan and Dachsbacher 2013]
-    edge         (alpha - 1) / 2 for squared bias: at edges it is of order one in a band as wide as the radius
+    edge         (alpha - 1) / 2 for squared bias: at edges bias is of order one in a band as wide as the radius; by the area that
+                 is there 3 (alpha - 1) / 2, by a local linear fit 5 (alpha - 1) / 2: of first and of second order
     predicted    the slope of the exact sums at these passes, fitted in the same way, which is the fair comparison before
                  the asymptote: variance_n / variance_1 = n^-2 sum r_1^2 / r_i^2, bias_n / bias_1 = mean of r_i^2 / r_1^2, with
                  Knaus and Zwicker's radii in closed form, and with Hachisuka's as they were recorded; MSE is their sum, with
                  the measured shares at the window's first pass
-    predicted_edge   the same where all bias is that of a straight edge, at which a disc of radius r at the distance t r
-                 misses the share (acos t - t sqrt(1 - t^2)) / pi of its photons
+    predicted_edge   the same where all bias is that of a straight edge (theory.py)
 
 and a verdict: "agrees" when the difference from `predicted` is within its 95% interval, "agrees at edges" when that from
 `predicted_edge` is, "between" when the slope lies between the two (pictures have both smooth walls and edges), otherwise

@@ -9,9 +9,10 @@
 
 [Knaus and Zwicker 2011; Kaplanyan and Dachsbacher 2013]
 
-At edges squared bias is of order one in a band as wide as the radius, so it falls as (alpha - 1) / 2; for these very passes where a
+At edges bias is of order one in a band as wide as the radius, so its square falls as (alpha - 1) / 2; for these very passes where a
 straight edge is all bias there is: a disc of radius r at the distance t r misses the share (acos t - t sqrt(1 - t^2)) / pi of its
-photons.
+photons. Divided by the area that is there, bias in the band is of first order in the radius, by a local linear fit of second: its
+square falls as 3 (alpha - 1) / 2 and 5 (alpha - 1) / 2. [docs/theory.md, section 2]
 """
 
 import math
@@ -47,16 +48,50 @@ def recorded_radii(rows, last):
                      - 2 * math.log(means.iloc[0]))
 
 
-def squared_bias_at_edges(squared):
+def missing_share(t):
+    """Of a disc beyond a chord at distance t radii."""
+    return (numpy.arccos(t) - t * numpy.sqrt(1 - t * t)) / math.pi
+
+
+def moments_across(t):
+    """Of the part of a disc that an edge at distance t radii leaves: area and the first three moments of the offset across it, in
+    shares of the disc and units of its radius."""
+    rest = 1 - t * t
+    return (1 - missing_share(t), -2 / 3 * rest ** 1.5 / math.pi,
+            1 / 4 - (math.pi / 2 - numpy.arcsin(t) + t * numpy.sqrt(rest) * (1 - 2 * t * t)) / (4 * math.pi),
+            (-2 / 3 * rest ** 1.5 + 2 / 5 * rest ** 2.5) / math.pi)
+
+
+def centroid(t):
+    """How far the part's centroid lies beside the point."""
+    area, first, _, _ = moments_across(t)
+    return first / area
+
+
+def square_of_linear_fit(t):
+    """What a local linear fit makes of the square of the offset across, less what it makes of it in a whole disc."""
+    area, first, second, third = moments_across(t)
+    return (second * second - first * third) / (area * second - first * first) - 1 / 4
+
+
+# By `area`: bias at the distance t r from a straight edge, and the power of r that it is multiplied by.
+BIAS_AT_EDGES = {"disc": (missing_share, 0), "seen": (centroid, 1), "linear": (square_of_linear_fit, 2)}
+
+
+def area_of(first):
+    """What a row's method divides by; records from before there was a choice have none."""
+    return first.get("area") or "disc"
+
+
+def squared_bias_at_edges(squared, area="disc"):
     """Squared bias along a straight edge, integrated over the distance to it, after each of the passes whose r_i^2 / r_1^2 are
-    given; up to a factor that is common to all. [Share of a disc beyond a chord; each pass has an equal part in the mean]"""
+    given; up to a factor that is common to all. [Each pass has an equal part in the mean]"""
+    at, power = BIAS_AT_EDGES[area]
     radii = numpy.sqrt(squared)
     distances = (numpy.arange(EDGE_STEPS) + 0.5) / EDGE_STEPS * radii.max()
     mean, found = numpy.zeros(EDGE_STEPS), numpy.empty(len(radii))
     for place, radius in enumerate(radii):
-        t = numpy.minimum(1, distances / radius)
-        missed = (numpy.arccos(t) - t * numpy.sqrt(1 - t * t)) / math.pi
-        mean += (missed - mean) / (place + 1)
+        mean += (radius ** power * at(numpy.minimum(1, distances / radius)) - mean) / (place + 1)
         found[place] = (mean ** 2).mean()
     return found
 
@@ -85,7 +120,7 @@ def predictions(rows, component, last):
     knaus_zwicker = first["schedule"] == "knaus-zwicker"
     squared = knaus_zwicker_radii(float(first["alpha"]), last) if knaus_zwicker else recorded_radii(rows, last)
     return {"variance": numpy.cumsum(1 / squared) / number ** 2, "squared_bias": (numpy.cumsum(squared) / number) ** 2,
-            "edge": squared_bias_at_edges(squared)}
+            "edge": squared_bias_at_edges(squared, area_of(first))}
 
 
 def with_direct_light(predicted, direct, gathered, number):
@@ -110,5 +145,6 @@ def asymptotes(first, component):
     if not first["alpha"]:
         return none
     alpha = float(first["alpha"])
-    return {"variance": (-alpha, None), "squared_bias": (2 * (alpha - 1), (alpha - 1) / 2),
+    _, power = BIAS_AT_EDGES[area_of(first)]
+    return {"variance": (-alpha, None), "squared_bias": (2 * (alpha - 1), (2 * power + 1) * (alpha - 1) / 2),
             "mse": (-min(alpha, 2 - 2 * alpha), None)}

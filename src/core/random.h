@@ -31,6 +31,7 @@ enum class RandomPurpose : std::uint8_t {
     CameraPositions = 12,
     ReferencePositionsA = 13,
     ReferencePositionsB = 14,
+    SeenArea = 15,
 };
 
 class RandomStream {

@@ -1,7 +1,8 @@
 // Density estimation at a hit point, shared by photonmapper, ppm and sppm: what the photons around it bring.
 //
-// L = sum over photons of f power K / (pi r^2 N), with N emitted paths; here everything but the division.
-// [Jensen 2001, equation 7.6; kernels: gather/kernel.h]
+// L = sum over photons of f power K w / (pi r^2 N), with N emitted paths; here everything but the division. w is 1 in a
+// whole disc, and elsewhere what makes the area that is there of the disc's.
+// [Jensen 2001, equation 7.6; kernels: gather/kernel.h; w: gather/area_weights.h]
 
 #pragma once
 
@@ -50,14 +51,15 @@ public:
     /// The BRDF where it is a constant; else 1.
     ColorD factor() const { return glossy_ ? ColorD(1.0) : ColorD(uniform_); }
 
-    void add(const ColorD& carried, double kernel_weight) {
+    /// `weight`: the kernel's times the area's.
+    void add(const ColorD& carried, double weight) {
         ++count_;
-        sum_ += carried * kernel_weight;
+        sum_ += carried * weight;
     }
 
     /// The same from the photon, if it counts.
-    void add(const Photon& photon, double kernel_weight) {
-        if (counts(photon)) add(carried(photon), kernel_weight);
+    void add(const Photon& photon, double weight) {
+        if (counts(photon)) add(carried(photon), weight);
     }
 
     /// Relative to Scene::total_power, per steradian.
@@ -96,16 +98,23 @@ struct PointGather {
     PointGather(const Scene& scene, const HitPoint& point, int max_depth, const GatherReach& reach)
         : sum(scene, point, max_depth), moments(point, reach) {}
 
-    /// Takes a photon that was accepted at the point within the reach.
-    void add(const Photon& photon, double squared_distance, const GatherReach& reach, Kernel kernel) {
+    /// Takes a photon that the map found around the point; the density estimate is that within `squared_radius`.
+    void add(const Scene& scene, const Photon& photon, double squared_distance, double squared_radius,
+             const GatherArea& area, Kernel kernel) {
         if (!sum.counts(photon)) return;
-        const double squared_radius = reach.radius * reach.radius;
+        double area_weight = 1.0;
+        if (!area.is_whole()) {
+            const std::optional<double> weight = area.weight(scene, photon);
+            if (!weight) return;
+            area_weight = *weight;
+        }
         const ColorD carried = sum.carried(photon);
         if constexpr (Moments::are_none) {
-            sum.add(carried, kernel_weight(kernel, std::min(1.0, squared_distance / squared_radius)));
+            sum.add(carried, area_weight * kernel_weight(kernel, std::min(1.0, squared_distance / squared_radius)));
         } else {
             const bool is_inside = squared_distance <= squared_radius;
-            const double weight = is_inside ? kernel_weight(kernel, squared_distance / squared_radius) : 0.0;
+            const double weight =
+                is_inside ? area_weight * kernel_weight(kernel, squared_distance / squared_radius) : 0.0;
             if (is_inside) sum.add(carried, weight);
             moments.add({photon, squared_distance, carried, is_inside, weight});
         }
@@ -141,10 +150,20 @@ std::vector<PointGather<Moments>> gather_within(const PhotonMap& map, const Scen
         queries,
         [&](std::size_t query, const Photon& photon, double squared_distance) {
             const std::size_t place = places[query];
-            gathered[place].add(photon, squared_distance, reaches[place], settings.kernel);
+            const GatherReach& reach = reaches[place];
+            gathered[place].add(scene, photon, squared_distance, reach.radius * reach.radius, reach.area,
+                                settings.kernel);
         },
         settings.eps);
     return gathered;
+}
+
+inline GatherAreaSettings gather_area_settings(const MethodSettings& settings) {
+    return {.mode = settings.area, .kernel = settings.kernel, .lines = settings.area_lines};
+}
+
+inline SurfaceEnd surface_end(const HitPoint& point) {
+    return {point.position, point.normal, point.geometric_normal};
 }
 
 /// Radii that can be asked for, in shares of the scene (unit box). Float positions near its walls are 3e-8 apart: a

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "core/math.h"
+#include "gather/gather_areas.h"
 #include "gather/moments.h"
 #include "transport/hit_point_list.h"
 #include "transport/photons.h"
@@ -17,6 +18,7 @@ namespace photonlab {
 struct GatherReach {
     double radius = 0.0;     ///< of the density estimate
     double bandwidth = 0.0;  ///< of the curvature kernel
+    GatherArea area = {};    ///< that the density estimate divides by, within the radius
 };
 
 /// A photon that was found within the larger of the two.
@@ -25,7 +27,7 @@ struct PhotonNear {
     double squared_distance;
     ColorD flux;           ///< times the BRDF, but for what FluxSum::factor() says
     bool is_inside;        ///< the radius
-    double kernel_weight;  ///< 0 outside
+    double kernel_weight;  ///< 0 outside; times the area's
 };
 
 /// Sums of which Curvature is made.

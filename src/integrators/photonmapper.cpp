@@ -25,14 +25,24 @@ struct Search {
     std::vector<std::uint32_t> counts;  ///< photons that each hit point found in the last gather
     double max_radius = 0.0;            ///< mode `nearest`, unit box
     std::size_t k = 0;                  ///< mode `nearest`
+    GatherAreas areas;
 
-    std::uint64_t bytes() const { return radii.size() * sizeof(double) + counts.size() * sizeof(std::uint32_t); }
+    Search(const MethodSettings& settings, const IntegratorContext& context)
+        : areas(context.scene, gather_area_settings(settings), context.hit_points.points.size()) {}
+
+    std::uint64_t bytes() const {
+        return radii.size() * sizeof(double) + counts.size() * sizeof(std::uint32_t) + areas.bytes();
+    }
 };
 
 class PhotonMapping : public Integrator {
 public:
     PhotonMapping(const MethodSettings& settings, const IntegratorContext& context)
-        : settings_(settings), context_(context), order_(context.hit_points.points) {
+        : settings_(settings),
+          context_(context),
+          order_(context.hit_points.points),
+          global_(settings, context),
+          caustic_(settings, context) {
         global_.k = static_cast<std::size_t>(settings.k);
         caustic_.k = static_cast<std::size_t>(settings.caustic_k);
         const Scene& scene = context.scene;
@@ -99,10 +109,15 @@ private:
         std::vector<std::uint64_t> gathered(blocks, 0);
         parallel_for(blocks, context_.threads, [&](std::size_t block) {
             const BlockRange range = block_range(block, points.size(), hit_points_per_block);
-            const auto found = settings_.mode == GatherMode::Radius
-                                   ? gather_within(map, context_.scene, points, order_, range, settings_,
-                                                   [&](std::size_t i) { return GatherReach{search.radii[i]}; })
-                                   : gather_nearest(map, search, range);
+            const auto found =
+                settings_.mode == GatherMode::Radius
+                    ? gather_within(map, context_.scene, points, order_, range, settings_,
+                                    [&](std::size_t i) {
+                                        return GatherReach{
+                                            .radius = search.radii[i],
+                                            .area = search.areas.at(surface_end(points[i]), i, search.radii[i])};
+                                    })
+                    : gather_nearest(map, search, range);
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 const FluxSum& sum = found[i - range.begin].sum;
                 radiance_[i] += sum.flux() / (pi * search.radii[i] * search.radii[i]);
@@ -118,11 +133,13 @@ private:
         std::vector<PointGather<NoMoments>> found;
         for (std::size_t i = range.begin; i < range.end; ++i) {
             const HitPoint& point = context_.hit_points.points[i];
-            FluxSum& sum = found.emplace_back(context_.scene, point, settings_.max_depth, GatherReach{}).sum;
+            PointGather<NoMoments>& at = found.emplace_back(context_.scene, point, settings_.max_depth, GatherReach{});
+            std::optional<GatherArea> area;  // in the k-th photon's ball
             const NearestPhotons nearest = map.nearest(
                 query_at(context_.scene, point, search.max_radius), search.k,
                 [&](const Photon& photon, double squared_distance, double squared_radius) {
-                    sum.add(photon, kernel_weight(settings_.kernel, std::min(1.0, squared_distance / squared_radius)));
+                    if (!area) area = search.areas.at(surface_end(point), i, std::sqrt(squared_radius));
+                    at.add(context_.scene, photon, squared_distance, squared_radius, *area, settings_.kernel);
                 },
                 settings_.eps);
             search.radii[i] = std::sqrt(nearest.squared_radius);
@@ -148,8 +165,8 @@ IntegratorKind photonmapper_kind() {
             .paper = "Jensen 1996, directly visualised",
             .needs = [](const MethodSettings&) { return Needs{.photons = Needs::Photons::OfAllPasses}; },
             .settings = {"mode", "k", "radius", "footprints", "max_radius", "caustic_k", "caustic_radius",
-                         "caustic_max_radius", "kernel", "eps", "direct", "direct_samples", "max_depth",
-                         "branch_cutoff", "photons_per_pass"},
+                         "caustic_max_radius", "kernel", "area", "area_lines", "eps", "direct", "direct_samples",
+                         "max_depth", "branch_cutoff", "photons_per_pass"},
             .make = make_integrator_of<PhotonMapping>};
 }
 

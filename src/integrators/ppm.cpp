@@ -28,6 +28,7 @@ public:
           context_(context),
           order_(context.hit_points.points),
           rule_(make_radius_rule(radius_rule_settings(settings), context.hit_points.points.size())),
+          areas_(context.scene, gather_area_settings(settings), context.hit_points.points.size()),
           statistics_(context.hit_points.points.size()) {
         for (std::size_t i = 0; i < statistics_.size(); ++i) statistics_[i].squared_radius = initial_squared_radius(i);
         if (settings.estimate_error == ErrorEstimation::Off) return;
@@ -60,7 +61,7 @@ public:
     IntegratorReport report() const override {
         IntegratorReport report{.photons_gathered = photons_gathered_,
                                 .bytes = order_.bytes() + statistics_.size() * sizeof(GatherStatistics) +
-                                         rule_->bytes() + of_pass_.size() * sizeof(double) +
+                                         rule_->bytes() + areas_.bytes() + of_pass_.size() * sizeof(double) +
                                          (error_ ? error_->bytes() : 0)};
         set_radii(
             report, statistics_.size(), [&](std::size_t i) { return std::sqrt(statistics_[i].squared_radius); },
@@ -126,8 +127,9 @@ private:
     }
 
     template <typename Moments>
-    GatherReach reach_of(std::size_t i) const {
+    GatherReach reach_of(std::size_t i) {
         GatherReach reach{.radius = std::sqrt(statistics_[i].squared_radius)};
+        reach.area = areas_.at(surface_end(context_.hit_points.points[i]), i, reach.radius);
         if constexpr (Moments::has_curvature)
             reach.bandwidth =
                 std::sqrt(squared_curvature_bandwidth(settings_.laplacian_radius, initial_squared_radius(i), passes_));
@@ -171,6 +173,7 @@ private:
     const IntegratorContext context_;
     const SearchOrder order_;
     const std::unique_ptr<RadiusRule> rule_;
+    GatherAreas areas_;
     std::uint64_t passes_ = 0;                  // taken so far, from whichever pass they began at
     std::vector<GatherStatistics> statistics_;  // joined with the hit points by index
     std::optional<ErrorEstimate> error_;        // where it is asked for
@@ -192,7 +195,8 @@ IntegratorKind ppm_kind() {
                          "test_photons",    "test_shrink",
                          "test_growth",     "estimate_error",
                          "radius",          "footprints",
-                         "kernel",          "eps",
+                         "kernel",          "area",
+                         "area_lines",      "eps",
                          "direct",          "direct_samples",
                          "max_depth",       "branch_cutoff",
                          "photons_per_pass"},

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "core/text/names.h"
+#include "gather/area_weights.h"
 #include "gather/kernel.h"
 #include "gather/radius_rule.h"
 #include "transport/camera_pass.h"
@@ -93,6 +94,8 @@ struct MethodSettings {
     std::optional<double> caustic_radius = std::nullopt;      ///< scene units; empty: as `radius`
     std::optional<double> caustic_max_radius = std::nullopt;  ///< scene units; empty: from default_caustic_share
     Kernel kernel = Kernel::Disc;
+    AreaMode area = AreaMode::Disc;
+    int area_lines = default_area_lines;
     double eps = 0.0;
     DirectMode direct = DirectMode::Sampled;
     int direct_samples = 1;

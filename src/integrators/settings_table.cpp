@@ -297,6 +297,21 @@ const std::vector<SettingField>& setting_fields() {
                                              .applies = in_mode_nearest}),
         line<&Settings::kernel>(
             {.name = "kernel", .option = "--kernel", .meaning = "weight of a photon by its distance"}),
+        line<&Settings::area>({.name = "area",
+                               .option = "--area",
+                               .label = "area",
+                               .meaning = "what photons are divided by: the disc's area, that of the surface on which "
+                                          "they would be accepted (then none from beyond a wall is), or the same by "
+                                          "weights of a local linear fit, which can be negative"}),
+        line<&Settings::area_lines>(
+            {.name = "area_lines",
+             .option = "--area-lines",
+             .unit = "lines",
+             .label = "lines an area",
+             .meaning = "lines, in each of five rings, by which the area around a hit point is measured; an eighth of "
+                        "them where hit points are new in every pass",
+             .range = Range{.least = 1, .most = 1e6},
+             .applies = [](const Settings& settings) { return settings.area != AreaMode::Disc; }}),
         line<&Settings::eps>({.name = "eps",
                               .option = "--eps",
                               .label = "eps",

@@ -32,6 +32,7 @@ public:
           context_(context),
           pixels_(pixel_count(context.hit_points)),
           rule_(make_radius_rule(radius_rule_settings(settings), pixels_)),
+          areas_(context.scene, gather_area_settings(settings), 0),
           statistics_(pixels_, GatherStatistics{.squared_radius = 1.0}) {
         if (settings.estimate_error == ErrorEstimation::On) error_.emplace(pixels_, pixels_);
         set_radii(context.hit_points);
@@ -139,9 +140,12 @@ private:
         std::vector<MomentsOfPass> parts(Moments::are_none ? 0 : points.size());
         parallel_for(block_count(points.size(), hit_points_per_block), context_.threads, [&](std::size_t block) {
             const BlockRange range = block_range(block, points.size(), hit_points_per_block);
-            const auto gathered =
-                gather_within<Moments>(*pass.photons, context_.scene, points, order, range, settings_,
-                                       [&](std::size_t i) { return reach_of<Moments>(pass.points, i); });
+            const auto gathered = gather_within<Moments>(
+                *pass.photons, context_.scene, points, order, range, settings_, [&](std::size_t i) {
+                    GatherReach reach = reach_of<Moments>(pass.points, i);
+                    reach.area = areas_.of_pass(surface_end(points[i]), i, pass.number, reach.radius);
+                    return reach;
+                });
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 const PointGather<Moments>& at = gathered[i - range.begin];
                 const double paths = static_cast<double>(pass.paths_emitted);
@@ -197,6 +201,7 @@ private:
     const IntegratorContext context_;
     const std::size_t pixels_;
     const std::unique_ptr<RadiusRule> rule_;
+    const GatherAreas areas_;
     std::uint64_t passes_ = 0;                  // taken so far, from whichever pass they began at
     std::vector<GatherStatistics> statistics_;  // one a pixel; squared radii in shares of each hit point's initial one
     std::optional<ErrorEstimate> error_;        // where it is asked for
@@ -224,7 +229,8 @@ IntegratorKind sppm_kind() {
                          "test_photons",    "test_shrink",
                          "test_growth",     "estimate_error",
                          "radius",          "footprints",
-                         "kernel",          "eps",
+                         "kernel",          "area",
+                         "area_lines",      "eps",
                          "direct",          "direct_samples",
                          "max_depth",       "branch_cutoff",
                          "photons_per_pass"},

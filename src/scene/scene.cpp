@@ -346,6 +346,10 @@ Scene build_scene(const SceneDescription& description, std::optional<Resolution>
 // ---------------------------------------------------------------------------------------------------------------------
 
 std::optional<Hit> intersect(const Scene& scene, const Ray& ray) {
+    return intersect_between(scene, ray, 0.0f, infinity);
+}
+
+std::optional<Hit> intersect_between(const Scene& scene, const Ray& ray, float nearest, float farthest) {
     RTCRayHit query{};
     query.ray.org_x = ray.origin.x;
     query.ray.org_y = ray.origin.y;
@@ -353,8 +357,8 @@ std::optional<Hit> intersect(const Scene& scene, const Ray& ray) {
     query.ray.dir_x = ray.direction.x;
     query.ray.dir_y = ray.direction.y;
     query.ray.dir_z = ray.direction.z;
-    query.ray.tnear = 0.0f;
-    query.ray.tfar = infinity;
+    query.ray.tnear = nearest;
+    query.ray.tfar = farthest;
     query.ray.mask = ~0u;
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;

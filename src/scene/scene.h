@@ -78,6 +78,9 @@ Scene build_scene(const SceneDescription& description, std::optional<Resolution>
 /// First surface along the ray, or nothing.
 std::optional<Hit> intersect(const Scene& scene, const Ray& ray);
 
+/// The same between two distances from its origin.
+std::optional<Hit> intersect_between(const Scene& scene, const Ray& ray, float nearest, float farthest);
+
 /// Two points, which the caller has moved off their own surfaces (offset_from_surface).
 struct Segment {
     Vector from;

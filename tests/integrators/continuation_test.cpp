@@ -11,12 +11,16 @@ namespace photonlab::test {
 namespace {
 
 std::vector<MethodSettings> methods() {
-    return {{.schedule = ScheduleName::Hachisuka},
-            {.schedule = ScheduleName::KnausZwicker, .alpha = 0.5},
-            {.direct = DirectMode::Photons},
-            {.integrator = "photonmapper", .mode = GatherMode::Radius},
-            {.integrator = "photonmapper", .mode = GatherMode::Nearest, .k = 20},
-            {.integrator = "path"}};
+    return {
+        {.schedule = ScheduleName::Hachisuka},
+        {.schedule = ScheduleName::KnausZwicker, .alpha = 0.5},
+        {.direct = DirectMode::Photons},
+        {.kernel = Kernel::Cone, .area = AreaMode::Seen, .area_lines = 4},
+        {.integrator = "sppm", .area = AreaMode::Linear, .area_lines = 4},
+        {.integrator = "photonmapper", .mode = GatherMode::Nearest, .k = 20, .area = AreaMode::Seen, .area_lines = 4},
+        {.integrator = "photonmapper", .mode = GatherMode::Radius},
+        {.integrator = "photonmapper", .mode = GatherMode::Nearest, .k = 20},
+        {.integrator = "path"}};
 }
 
 class Continuation : public ::testing::TestWithParam<MethodSettings> {
@@ -107,6 +111,7 @@ INSTANTIATE_TEST_SUITE_P(OfEveryMethod, Continuation, ::testing::ValuesIn(method
     std::string name = method.integrator;
     if (name == "ppm") name += method.schedule == ScheduleName::Hachisuka ? "Hachisuka" : "KnausZwicker";
     if (name == "photonmapper") name += method.mode == GatherMode::Radius ? "Radius" : "Nearest";
+    if (method.area != AreaMode::Disc) name += method.area == AreaMode::Seen ? "Seen" : "Linear";
     return name + (method.direct == DirectMode::Photons ? "DirectPhotons" : "");
 });
 

@@ -39,7 +39,7 @@ TEST(Records, ColumnsAreThoseOfTheContract) {
         "laplacian_radius,test_variant,start,test_photons,test_shrink,test_growth,positions,branches,estimate_error,"
         "k,radius_rule,radius_initial,footprints,max_radius,"
         "caustic_k,"
-        "caustic_radius,caustic_max_radius,kernel,eps,"
+        "caustic_radius,caustic_max_radius,kernel,area,area_lines,eps,"
         "direct,direct_samples,max_depth,branch_cutoff,photons_per_pass,width,height,samples_per_pixel,hit_points,seed,"
         "threads,"
         "pass,component,"
@@ -66,6 +66,8 @@ TEST(Records, WhatDoesNotApplyIsEmpty) {
                                "caustic_radius",
                                "caustic_max_radius",
                                "kernel",
+                               "area",
+                               "area_lines",
                                "eps",
                                "direct",
                                "direct_samples",

@@ -20,6 +20,8 @@ constexpr std::uint64_t probe_paths = 10'000;
 
 // Statistics of one method at a hit point, direct light, and what an estimate makes of them.
 constexpr double bytes_of_statistics = 120.0;
+// What is known of the area around one, where photons are not divided by the disc's: 600 at edges, which are a part.
+constexpr double bytes_of_area = 150.0;
 // Layers in float and double, their sum, an error's pixels, the file in memory, the reference's halves and their mean.
 constexpr double bytes_of_pixel = 240.0;
 
@@ -74,7 +76,9 @@ MemoryEstimate MemoryEstimator::of(const std::vector<RunSettings>& together, std
     const auto methods = static_cast<double>(together.size());
     // While they are made, they are in tiles as well, and in lists that double as they grow.
     const double making = 2.0 * points.bytes_each + sizeof(HitPoint);
-    const double held = 2.0 * points.bytes_each + methods * bytes_of_statistics;
+    double held = 2.0 * points.bytes_each + methods * bytes_of_statistics;
+    for (const RunSettings& one : together)
+        if (one.method.area != AreaMode::Disc) held += bytes_of_area;
     MemoryEstimate estimate;
     estimate.program = resident_mebibytes();
     estimate.hit_points = margin * points.count * std::max(making, held) / mebibyte;

@@ -86,6 +86,19 @@ std::vector<SurfacePoint> Disk::probes() const {
     return points;
 }
 
+double Disk::distance_to(const Vector& position) const {
+    const VectorD offset = VectorD(position) - VectorD(centre);
+    const double height = offset.dot(VectorD(frame.normal));
+    const double beyond_rim = std::max(0.0, std::sqrt(std::max(0.0, offset.length2() - height * height)) - radius);
+    return std::hypot(height, beyond_rim);
+}
+
+std::optional<Vector> Disk::whole_within(const Vector& position, double distance) const {
+    const VectorD offset = VectorD(position) - VectorD(centre);
+    if (std::abs(offset.dot(VectorD(frame.normal))) > 1e-6 || offset.length() + distance > radius) return std::nullopt;
+    return frame.normal;
+}
+
 SurfacePoint Disk::sample_area(const Imath::V2f& u, double) const {
     const Imath::V2f point = sample_unit_disc(u) * radius;
     return {centre + frame.tangent * point.x + frame.bitangent * point.y, frame.normal};

@@ -92,6 +92,19 @@ SurfacePoint Sphere::sample_area(const Imath::V2f& u, double) const {
     return {centre + outward * radius, outward * orientation};
 }
 
+double Sphere::distance_to(const Vector& position) const {
+    return std::abs((VectorD(position) - VectorD(centre)).length() - radius);
+}
+
+/// Photons on a sphere lie within the chord r on exactly pi r^2 of it; normals turn by 60 degrees over a chord as long
+/// as the radius, and a little is left for how photons keep them. [docs/theory.md, section 4]
+std::optional<Vector> Sphere::whole_within(const Vector& position, double distance) const {
+    const VectorD outward = VectorD(position) - VectorD(centre);
+    const double from_centre = outward.length();
+    if (distance > 0.95 * radius || std::abs(from_centre - radius) > 1e-6) return std::nullopt;
+    return Vector(outward / from_centre) * orientation;
+}
+
 // ---------------------------------------------------------------------------------------------------------------------
 
 namespace {

@@ -38,6 +38,8 @@ struct Sphere {
     void complete(Hit& hit, const Ray& ray, float, float) const;
     SurfaceTangents tangents(const Hit& hit) const;
     std::vector<SurfacePoint> probes() const;
+    double distance_to(const Vector& position) const;
+    std::optional<Vector> whole_within(const Vector& position, double distance) const;
 
     SurfacePoint sample_area(const Imath::V2f& u, double) const;
     /// By the solid angle of the visible cap, whose density is constant; empty from inside, from on it, and where it

@@ -104,6 +104,10 @@ struct SurfaceTangents {
 /// a hit of the ray from its distance, and tangents() are there; probes() are points all over it, away from where
 /// others may rest on it.
 ///
+/// A kind that knows where it is whole has distance_to(position), and whole_within(position, distance): the normal at a
+/// point on it around which its area within any distance up to that one is a flat disc's, all of it seen from there,
+/// its normals within 60 degrees; empty elsewhere.
+///
 /// A kind that can be sampled as seen from a point has sample_seen() and seen_density() as well, which are empty where
 /// the area must do.
 template <typename Kind>

@@ -126,10 +126,30 @@ class NoisyReferences(unittest.TestCase):
 
 
 class SquaredBiasAtEdges(unittest.TestCase):
-    def test_falls_with_the_radius_to_the_first_power(self):
-        for alpha in [0.5, 2 / 3, 0.8]:
-            found = theory.squared_bias_at_edges(theory.knaus_zwicker_radii(alpha, 4096))
-            self.assertAlmostEqual(slopes.slope([2048, 4096], found[[2047, 4095]]), (alpha - 1) / 2, delta=0.012)
+    def test_falls_with_the_radius_to_the_first_third_or_fifth_power(self):
+        for area, power, alphas in [("disc", 1, [0.5, 2 / 3, 0.8]), ("seen", 3, [0.6]), ("linear", 5, [0.7])]:
+            for alpha in alphas:
+                found = theory.squared_bias_at_edges(theory.knaus_zwicker_radii(alpha, 4096), area)
+                self.assertAlmostEqual(slopes.slope([2048, 4096], found[[2047, 4095]]), power * (alpha - 1) / 2, delta=0.012, msg=area)
+
+    def test_is_that_of_means_over_the_part_of_a_disc_that_is_there(self):
+        """By counting cells of the part, at several distances from the edge: its share, its centroid, and what weights of the least
+        squares fit of a plane make of a square."""
+        cells = (numpy.arange(-600, 600) + 0.5) / 600
+        x, y = numpy.meshgrid(cells, cells)
+        in_disc = x * x + y * y < 1
+        for distance in [0.0, 0.2, 0.5, 0.9]:
+            u = x[in_disc & (x < distance)]
+            self.assertAlmostEqual(theory.missing_share(distance), 1 - len(u) / in_disc.sum(), delta=2e-3)
+            self.assertAlmostEqual(theory.centroid(distance), u.mean(), delta=2e-3)
+            plane = numpy.polynomial.polynomial.polyfit(u, u * u, 1)
+            self.assertAlmostEqual(theory.square_of_linear_fit(distance), plane[0] - 1 / 4, delta=2e-3)
+
+    def test_is_told_by_the_column_of_areas_and_a_disc_without_one(self):
+        row = {"photons_per_pass": "1000", "direct": "photons", "alpha": "0.5", "radius_initial": "1", "schedule": "hachisuka"}
+        for area, slope in [({}, -0.25), ({"area": ""}, -0.25), ({"area": "disc"}, -0.25), ({"area": "seen"}, -0.75),
+                            ({"area": "linear"}, -1.25)]:
+            self.assertEqual(theory.asymptotes({**row, **area}, "gathered")["squared_bias"], (-1.0, slope))
 
     def test_is_that_of_discs_that_hang_over_an_edge(self):
         """Two passes, radii 1 and 0.6, by counting cells of discs instead of by the chord's formula."""

@@ -1,0 +1,149 @@
+#include "gather/gather_areas.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace photonlab {
+
+namespace {
+
+/// Radii are told apart by octaves and parts of these, from one that holds the scene around any point of it down to
+/// where lines see nothing any more.
+constexpr double largest_radius = 2.0;
+constexpr double smallest_radius = 4e-5;  // 31 half octaves below
+constexpr int whole_steps = 2;            ///< an octave, at which discs are asked whether they are whole
+constexpr int flat_steps = 16;  ///< an octave, between which flat areas are interpolated: to 0.03% of the disc
+constexpr double measured_octaves = 2.0;  ///< from the top of a SeenArea to its least radius
+
+/// Octaves below the largest radius.
+double depth_of(double radius) {
+    return std::log2(largest_radius / std::clamp(radius, smallest_radius, largest_radius));
+}
+double radius_at(double depth) {
+    return largest_radius * std::exp2(-depth);
+}
+
+/// Nothing is missing and nothing hidden, as far as lines can tell.
+bool is_whole(const SeenArea& area) {
+    return !area.is_obstructed && std::all_of(area.within.begin(), area.within.end(),
+                                              [](const AreaMoments& moments) { return moments.area == 1.0; });
+}
+
+}  // namespace
+
+/// Around one point: flat areas at two neighbouring radii, or, where these are not known, a measure by lines.
+struct GatherAreas::Around {
+    int flat_step = -1;
+    std::shared_ptr<const FlatSurroundings> surroundings;  // where they are flat
+    FlatArea outer;                                        // at the step's radius
+    FlatArea inner;                                        // at the next one's
+    std::unique_ptr<SeenArea> measured;
+
+    void look(const Scene& scene, const SurfaceEnd& point, Kernel kernel, int step) {
+        const double radius = radius_at(static_cast<double>(step) / flat_steps);
+        flat_step = step;
+        surroundings.reset();
+        auto found = flat_surroundings(scene, point, radius);
+        if (!found) return;
+        outer = flat_area(*found, kernel, radius);
+        inner = flat_area(*found, kernel, radius_at((step + 1.0) / flat_steps));
+        if (outer.is_valid && inner.is_valid)
+            surroundings = std::make_shared<const FlatSurroundings>(std::move(*found));
+    }
+
+    FlatArea flat(double radius) const {
+        const double outermost = radius_at(static_cast<double>(flat_step) / flat_steps);
+        const double innermost = radius_at((flat_step + 1.0) / flat_steps);
+        const double share = std::clamp((radius - innermost) / (outermost - innermost), 0.0, 1.0);
+        return {between(inner.moments, outer.moments, share), outer.is_obstructed || inner.is_obstructed};
+    }
+};
+
+GatherArea::GatherArea(const SurfaceEnd& point, double radius, const AreaWeights& weights,
+                       std::shared_ptr<const FlatSurroundings> walls)
+    : is_whole_(false),
+      walls_(std::move(walls)),
+      point_(point),
+      frame_(make_frame(point.geometric_normal)),
+      constant_(weights.constant),
+      slope_(Imath::V2d(weights.slope_u, weights.slope_v) / radius) {}
+
+GatherArea::GatherArea(const SurfaceEnd& point, double radius, const AreaWeights& weights, bool tests_reach)
+    : GatherArea(point, radius, weights, nullptr) {
+    tests_reach_ = tests_reach;
+    frame_ = make_frame(point.normal);
+}
+
+GatherAreas::GatherAreas(const Scene& scene, const GatherAreaSettings& settings, std::size_t points)
+    : scene_(scene),
+      settings_(settings),
+      known_(settings.mode == AreaMode::Disc ? 0 : points),
+      around_(known_.size()) {}
+
+GatherAreas::~GatherAreas() = default;
+
+bool GatherAreas::is_whole(const SurfaceEnd& point, Known& known, double radius) const {
+    const int step = static_cast<int>(whole_steps * depth_of(radius));
+    const std::uint32_t bit = 1u << step;
+    if (!(known.asked & bit)) {
+        known.asked |= bit;
+        if (is_whole_around(scene_, point, radius_at(static_cast<double>(step) / whole_steps))) known.whole |= bit;
+    }
+    return known.whole & bit;
+}
+
+AreaWeights GatherAreas::weights_of(const AreaMoments& moments) const {
+    return settings_.mode == AreaMode::Linear ? linear_weights(moments) : seen_weights(moments);
+}
+
+GatherArea GatherAreas::area_of(const SurfaceEnd& point, const FlatArea& flat,
+                                const std::shared_ptr<const FlatSurroundings>& surroundings, double radius) const {
+    if (!flat.is_obstructed && std::abs(flat.moments.area - 1.0) < 1e-9) return {};
+    return {point, radius, weights_of(flat.moments), flat.is_obstructed ? surroundings : nullptr};
+}
+
+GatherArea GatherAreas::area_of(const SurfaceEnd& point, const SeenArea& measured, double radius) const {
+    if (photonlab::is_whole(measured)) return {};
+    return {point, radius, weights_of(measured.moments(radius)), measured.is_obstructed};
+}
+
+GatherArea GatherAreas::at(const SurfaceEnd& point, std::size_t index, double radius) {
+    if (settings_.mode == AreaMode::Disc || is_whole(point, known_[index], radius)) return {};
+    if (!around_[index]) around_[index] = std::make_unique<Around>();
+    Around& around = *around_[index];
+    const double depth = depth_of(radius);
+    const int step = static_cast<int>(flat_steps * depth);
+    if (around.flat_step != step) around.look(scene_, point, settings_.kernel, step);
+    if (around.surroundings) return area_of(point, around.flat(radius), around.surroundings, radius);
+
+    const int series = static_cast<int>(depth / measured_octaves);
+    const double top = radius_at(measured_octaves * series);
+    if (!around.measured || around.measured->top != top)
+        around.measured = std::make_unique<SeenArea>(measure_seen_area(
+            scene_, point, settings_.kernel, top, {settings_.lines, index, static_cast<std::uint64_t>(series)}));
+    return area_of(point, *around.measured, radius);
+}
+
+GatherArea GatherAreas::of_pass(const SurfaceEnd& point, std::uint64_t index, std::uint64_t pass, double radius) const {
+    constexpr int fewer = 8;
+    constexpr std::uint64_t first_series = 256;  // beyond those of at()
+    if (settings_.mode == AreaMode::Disc || is_whole_around(scene_, point, radius)) return {};
+    if (auto surroundings = flat_surroundings(scene_, point, radius)) {
+        const FlatArea flat = flat_area(*surroundings, settings_.kernel, radius);
+        if (flat.is_valid)
+            return area_of(point, flat, std::make_shared<const FlatSurroundings>(std::move(*surroundings)), radius);
+    }
+    return area_of(point,
+                   measure_seen_area(scene_, point, settings_.kernel, radius,
+                                     {(settings_.lines + fewer - 1) / fewer, index, first_series + pass}),
+                   radius);
+}
+
+std::uint64_t GatherAreas::bytes() const {
+    std::uint64_t bytes = known_.size() * (sizeof(Known) + sizeof(around_[0]));
+    for (const auto& around : around_)
+        if (around) bytes += sizeof(Around) + (around->measured ? sizeof(SeenArea) : 0);
+    return bytes;
+}
+
+}  // namespace photonlab
