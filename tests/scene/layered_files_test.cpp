@@ -311,8 +311,8 @@ TEST_F(LayeredFiles, OfCroppedFilmsAreThatPartOfTheFilm) {
     EXPECT_NEAR(part.pixel_angle, whole.pixel_angle, 1e-12);
     for (const double x : {0.5, 10.0, 19.5})
         for (const double y : {0.5, 4.5, 8.5}) {
-            const Vector a = part.direction(x, y);
-            const Vector b = whole.direction(x + 5.0, y + 7.0);
+            const Vector a = part.ray(x, y, Imath::V2f(0.0f)).direction;
+            const Vector b = whole.ray(x + 5.0, y + 7.0, Imath::V2f(0.0f)).direction;
             for (int i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], 1e-6f);
         }
 }

@@ -526,12 +526,12 @@ TEST_F(BitmapFile, OfEightBitsIsDecodedFromSrgb) {
     write_png(folder_ / "colours.png", 2, 2, pixels);
     const auto texture = load("colours.png");
     ASSERT_TRUE(texture);
-    ASSERT_EQ(texture->image.width, 2);
-    ASSERT_EQ(texture->image.height, 2);
+    ASSERT_EQ(texture->image->width, 2);
+    ASSERT_EQ(texture->image->height, 2);
     for (std::size_t i = 0; i < 4; ++i)
         for (int channel = 0; channel < 3; ++channel) {
-            EXPECT_NEAR(texture->image.pixels[i][channel], pixels[i][channel], 2.4 / 1.055 / 510.0);
-            EXPECT_EQ(srgb_byte(texture->image.pixels[i][channel]), srgb_byte(pixels[i][channel]));
+            EXPECT_NEAR(texture->image->pixels[i][channel], pixels[i][channel], 2.4 / 1.055 / 510.0);
+            EXPECT_EQ(srgb_byte(texture->image->pixels[i][channel]), srgb_byte(pixels[i][channel]));
         }
 }
 
@@ -542,7 +542,7 @@ TEST_F(BitmapFile, IsNotDecodedWhenItIsRaw) {
     ASSERT_TRUE(texture);
     for (std::size_t i = 0; i < 2; ++i)
         for (int channel = 0; channel < 3; ++channel)
-            EXPECT_NEAR(texture->image.pixels[i][channel], srgb_byte(pixels[i][channel]) / 255.0, float_rounding);
+            EXPECT_NEAR(texture->image->pixels[i][channel], srgb_byte(pixels[i][channel]) / 255.0, float_rounding);
 }
 
 TEST_F(BitmapFile, IsRepeatedByScaleAndMovedByTranslate) {

@@ -291,8 +291,6 @@ MeshDescription sphere_mesh(const VectorD& centre, double radius, int rows, bool
     return mesh;
 }
 
-using Geometry = std::variant<MeshDescription, SphereDescription, DiskDescription>;
-
 SceneDescription ball_in_coloured_box(Geometry ball, const Material& material) {
     SceneDescription scene = hollow_cube(Color(1.0f), std::nullopt);
     scene.materials.push_back(diffuse(Color(0.5f, 0.2f, 0.0f)));
