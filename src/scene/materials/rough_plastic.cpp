@@ -14,13 +14,13 @@ struct Shares {
     double let_through = 0.0;
 };
 
-Shares shares_at(const Microfacets& facets, double cosine, double eta) {
-    constexpr int side = 32;
+Shares shares_at(const Microfacets& facets, double cosine, double eta, int side) {
     const Vector outgoing(static_cast<float>(std::sqrt(1.0 - cosine * cosine)), 0.0f, static_cast<float>(cosine));
     Shares sum;
     for (int i = 0; i < side * side; ++i) {
-        const Vector normal = facets.sample(
-            outgoing, {(static_cast<float>(i % side) + 0.5f) / side, (static_cast<float>(i / side) + 0.5f) / side});
+        const Vector normal =
+            facets.sample(outgoing, {(static_cast<float>(i % side) + 0.5f) / static_cast<float>(side),
+                                     (static_cast<float>(i / side) + 0.5f) / static_cast<float>(side)});
         const double cosine_here = outgoing.dot(normal);
         if (!(cosine_here > 0.0)) continue;
         const FresnelDielectric fresnel = fresnel_dielectric(cosine_here, eta);
@@ -32,6 +32,28 @@ Shares shares_at(const Microfacets& facets, double cosine, double eta) {
             sum.let_through += (1.0 - fresnel.reflected) * facets.weight(outgoing, through, normal);
     }
     return {sum.reflected / (side * side), sum.let_through / (side * side)};
+}
+
+/// What is not let out of the light inside, which is the integral of 2 R(c) c over the cosine c: by steps that resolve
+/// the critical angle.
+double inner_reflectance_of(const Microfacets& facets, double eta) {
+    constexpr int steps = 256;
+    double let_out = 0.0;
+    for (int i = 0; i < steps; ++i) {
+        const double cosine = (i + 0.5) / steps;
+        let_out += 2.0 * cosine * shares_at(facets, cosine, eta, 24).let_through / steps;
+    }
+    return 1.0 - let_out;
+}
+
+/// The mean of 2 R(c) c over the steps of the coat, both ends among them.
+double mean_inner_reflectance_of(const Microfacets& facets, double eta) {
+    double sum = 0.0;
+    for (int step = 0; step < RoughCoat::steps; ++step) {
+        const double cosine = std::max(1e-6, static_cast<double>(step) / (RoughCoat::steps - 1));
+        sum += 2.0 * cosine * shares_at(facets, cosine, eta, 32).reflected;
+    }
+    return sum / RoughCoat::steps;
 }
 
 }  // namespace
@@ -46,17 +68,13 @@ float RoughCoat::let_in_at(float cosine) const {
 
 RoughCoat make_rough_coat(const Microfacets& facets, double eta, bool as_mean) {
     RoughCoat coat{};
-    double sum = 0.0;
     for (int step = 0; step < RoughCoat::steps; ++step) {
         const double cosine = std::max(1e-6, static_cast<double>(step) / (RoughCoat::steps - 1));
         coat.let_in[static_cast<std::size_t>(step)] =
-            static_cast<float>(shares_at(facets, cosine, 1.0 / eta).let_through);
-        // What comes back is what is not let out: the integral for 0.6, which has it from tables of what is let out.
-        const Shares inside = shares_at(facets, cosine, eta);
-        const bool is_end = step == 0 || step == RoughCoat::steps - 1;
-        sum += as_mean ? inside.reflected * cosine : (1.0 - inside.let_through) * cosine * (is_end ? 0.5 : 1.0);
+            static_cast<float>(shares_at(facets, cosine, 1.0 / eta, 32).let_through);
     }
-    coat.inner_reflectance = static_cast<float>(2.0 * sum / (as_mean ? RoughCoat::steps : RoughCoat::steps - 1));
+    coat.inner_reflectance =
+        static_cast<float>(as_mean ? mean_inner_reflectance_of(facets, eta) : inner_reflectance_of(facets, eta));
     return coat;
 }
 
