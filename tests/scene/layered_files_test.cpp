@@ -52,8 +52,10 @@ TEST_F(LayeredFiles, HaveMitsubasDefaults) {
 
 TEST_F(LayeredFiles, MeanTheSameInBothSpellings) {
     const auto same = [&](const std::string& old_text, const std::string& text) {
-        const Bsdf a = material("0.6.0", old_text).bsdf;
-        const Bsdf b = material("3.0.0", text).bsdf;
+        const Material old_material = material("0.6.0", old_text);
+        const Material new_material = material("3.0.0", text);
+        const Bsdf& a = old_material.bsdf;
+        const Bsdf& b = new_material.bsdf;
         ASSERT_EQ(a.index(), b.index());
         const Vector out = Vector(0.3f, -0.2f, 0.9f).normalized();
         for (const Vector in : {Vector(-0.3f, 0.2f, 0.9f), Vector(0.1f, 0.5f, 0.4f), Vector(0.2f, 0.1f, -0.8f)}) {
