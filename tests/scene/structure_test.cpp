@@ -58,14 +58,15 @@ TEST_F(StructureTest, ALightOfTheSceneShinesFromTheShapeThatNamesIt) {
     }
 }
 
-TEST_F(StructureTest, SamplingWeightsAreNotedAndChangeNothing) {
+TEST_F(StructureTest, SamplingWeightsAreReadAndChangeNoRadiance) {
     for (const std::string name : {"sampling_weight", "samplingWeight"}) {
         const std::string weight = "<float name='" + name + "' value='2'/>";
         const auto scene = load_as("3.0.0", "<shape type='cube'><emitter type='area'>" + weight +
                                                 "</emitter></shape><emitter type='point'>" + weight + "</emitter>");
         EXPECT_EQ(scene.shapes.at(0).radiance.value(), ColorD(1.0));
-        ASSERT_EQ(scene.notes.size(), 1u);
-        EXPECT_TRUE(has_note(scene, "sampling_weight of emitters: not read"));
+        EXPECT_EQ(scene.shapes.at(0).sampling_weight, 2.0);
+        EXPECT_EQ(std::get<PointLightDescription>(scene.lights.at(0)).sampling_weight, 2.0);
+        EXPECT_TRUE(scene.notes.empty());
     }
 }
 
