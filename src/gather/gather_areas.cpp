@@ -108,7 +108,7 @@ GatherArea GatherAreas::area_of(const SurfaceEnd& point, const SeenArea& measure
 }
 
 GatherArea GatherAreas::at(const SurfaceEnd& point, std::size_t index, double radius) {
-    if (settings_.mode == AreaMode::Disc || is_whole(point, known_[index], radius)) return {};
+    if (is_of_disc(point) || is_whole(point, known_[index], radius)) return {};
     if (!around_[index]) around_[index] = std::make_unique<Around>();
     Around& around = *around_[index];
     const double depth = depth_of(radius);
@@ -127,7 +127,7 @@ GatherArea GatherAreas::at(const SurfaceEnd& point, std::size_t index, double ra
 GatherArea GatherAreas::of_pass(const SurfaceEnd& point, std::uint64_t index, std::uint64_t pass, double radius) const {
     constexpr int fewer = 8;
     constexpr std::uint64_t first_series = 256;  // beyond those of at()
-    if (settings_.mode == AreaMode::Disc || is_whole_around(scene_, point, radius)) return {};
+    if (is_of_disc(point) || is_whole_around(scene_, point, radius)) return {};
     if (auto surroundings = flat_surroundings(scene_, point, radius)) {
         const FlatArea flat = flat_area(*surroundings, settings_.kernel, radius);
         if (flat.is_valid)

@@ -82,6 +82,9 @@ private:
     };
     struct Around;
 
+    /// The area of the disc is taken whatever is there: so that of points that gather from two sides, of which each has
+    /// surroundings of its own.
+    bool is_of_disc(const SurfaceEnd& point) const { return settings_.mode == AreaMode::Disc || point.has_other_side; }
     bool is_whole(const SurfaceEnd& point, Known& known, double radius) const;
     AreaWeights weights_of(const AreaMoments& moments) const;
     GatherArea area_of(const SurfaceEnd& point, const FlatArea& flat,

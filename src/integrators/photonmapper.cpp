@@ -112,10 +112,10 @@ private:
             const auto found =
                 settings_.mode == GatherMode::Radius
                     ? gather_within(map, context_.scene, points, order_, range, settings_,
-                                    [&](std::size_t i) {
-                                        return GatherReach{
-                                            .radius = search.radii[i],
-                                            .area = search.areas.at(surface_end(points[i]), i, search.radii[i])};
+                                    [&](std::size_t i, const HitPoint& point) {
+                                        return GatherReach{.radius = search.radii[i],
+                                                           .area = search.areas.at(surface_end(context_.scene, point),
+                                                                                   i, search.radii[i])};
                                     })
                     : gather_nearest(map, search, range);
             for (std::size_t i = range.begin; i < range.end; ++i) {
@@ -138,7 +138,7 @@ private:
             const NearestPhotons nearest = map.nearest(
                 query_at(context_.scene, point, search.max_radius), search.k,
                 [&](const Photon& photon, double squared_distance, double squared_radius) {
-                    if (!area) area = search.areas.at(surface_end(point), i, std::sqrt(squared_radius));
+                    if (!area) area = search.areas.at(surface_end(context_.scene, point), i, std::sqrt(squared_radius));
                     at.add(context_.scene, photon, squared_distance, squared_radius, *area, settings_.kernel);
                 },
                 settings_.eps);
