@@ -3,10 +3,13 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <cstring>
+#include <fstream>
 
 #include "scene/scene.h"
 #include "scene/shapes/ply.h"
@@ -70,12 +73,11 @@ void expect_square(const MeshDescription& mesh) {
 class MeshFiles : public SceneFolderTest {
 protected:
     std::string refusal_of(const std::string& name, const std::string& bytes) const {
-        write(name, bytes);
         try {
             if (name.ends_with(".ply"))
-                read_ply_mesh(folder_ / name);
+                parse_ply_mesh(bytes, name, MitsubaFamily::Version3);
             else
-                read_serialized_mesh(folder_ / name, 0);
+                parse_serialized_mesh(bytes, {name, 0, "scene.xml:1"});
         } catch (const InputError& error) {
             std::string message = error.what();
             return message.substr(message.find(name));
@@ -89,13 +91,12 @@ TEST_F(MeshFiles, PlyIsReadAsTextAndInBothByteOrders) {
         for (const std::string number : {"float", "double"})
             for (const std::string texture : {"u v", "s t", "texture_u texture_v"}) {
                 SCOPED_TRACE(format + " " + number + " " + texture);
-                write("square.ply", square_as_ply(format, number, texture));
-                expect_square(read_ply_mesh(folder_ / "square.ply"));
+                expect_square(
+                    parse_ply_mesh(square_as_ply(format, number, texture), "square.ply", MitsubaFamily::Version3));
             }
     std::string dos = square_as_ply("ascii");
     for (std::size_t at = 0; (at = dos.find('\n', at)) != dos.npos; at += 2) dos.insert(at, "\r");
-    write("square.ply", dos);
-    expect_square(read_ply_mesh(folder_ / "square.ply"));
+    expect_square(parse_ply_mesh(dos, "square.ply", MitsubaFamily::Version3));
 }
 
 TEST_F(MeshFiles, PlyThatIsWrongIsRefused) {
@@ -133,18 +134,23 @@ std::string deflated(const std::string& bytes) {
     return result;
 }
 
+constexpr std::uint32_t with_normals = 1, with_texture = 2, with_face_normals = 0x10;
+
 /// A mesh of the square, moved up by `height`.
-std::string square_as_serialized(int version, bool in_double, double height) {
-    std::string body = bytes_of<std::uint32_t>((in_double ? 0x2000u : 0x1000u) | 1u | 2u);
+std::string square_as_serialized(int version, bool in_double, double height,
+                                 std::uint32_t parts = with_normals | with_texture) {
+    std::string body = bytes_of<std::uint32_t>((in_double ? 0x2000u : 0x1000u) | parts);
     if (version == 4) body += std::string("square") + '\0';
     body += bytes_of<std::uint64_t>(4) + bytes_of<std::uint64_t>(2);
     const auto add = [&](double value) { body += in_double ? bytes_of(value) : bytes_of(static_cast<float>(value)); };
     for (const auto& corner : corners)
         for (int i = 0; i < 3; ++i) add(corner[i] + (i == 2 ? height : 0.0));
-    for (const auto& corner : corners)
-        for (int i = 3; i < 6; ++i) add(corner[i]);
-    for (const auto& corner : corners)
-        for (int i = 6; i < 8; ++i) add(corner[i]);
+    if ((parts & with_normals) != 0)
+        for (const auto& corner : corners)
+            for (int i = 3; i < 6; ++i) add(corner[i]);
+    if ((parts & with_texture) != 0)
+        for (const auto& corner : corners)
+            for (int i = 6; i < 8; ++i) add(corner[i]);
     for (const std::uint32_t index : {0u, 1u, 2u, 0u, 2u, 3u}) body += bytes_of(index);
     return bytes_of<std::uint16_t>(0x041C) + bytes_of(static_cast<std::uint16_t>(version)) + deflated(body);
 }
@@ -161,12 +167,14 @@ TEST_F(MeshFiles, SerializedIsReadInBothVersionsWithAllItsShapes) {
     for (const int version : {3, 4})
         for (const bool in_double : {false, true}) {
             SCOPED_TRACE(fmt::format("version {}, {}", version, in_double));
-            write("two.serialized", file_of_two(version, in_double));
-            expect_square(read_serialized_mesh(folder_ / "two.serialized", 0).mesh);
-            const MeshDescription second = read_serialized_mesh(folder_ / "two.serialized", 1).mesh;
-            EXPECT_EQ(second.positions.at(2), VectorD(1, 1, 1.5));
-            EXPECT_THROW(read_serialized_mesh(folder_ / "two.serialized", 2), InputError);
-            EXPECT_THROW(read_serialized_mesh(folder_ / "two.serialized", -1), InputError);
+            const std::string two = file_of_two(version, in_double);
+            const auto mesh = [&](long index) {
+                return parse_serialized_mesh(two, {"two.serialized", index, "scene.xml:1"});
+            };
+            expect_square(mesh(0));
+            EXPECT_EQ(mesh(1).positions.at(2), VectorD(1, 1, 1.5));
+            EXPECT_THROW(mesh(2), InputError);
+            EXPECT_THROW(mesh(-1), InputError);
         }
 }
 
@@ -205,6 +213,173 @@ TEST_F(MeshFiles, AreReadFromScenes) {
     EXPECT_TRUE(mesh(2).normals.empty());
 }
 
+/// The mesh of one shape of a scene, whose material looks up textures.
+class MeshesInScenes : public MeshFiles {
+protected:
+    MeshDescription mesh_of(const std::string& version, const std::string& file, const std::string& properties) const {
+        const std::string type = file.substr(file.find('.') + 1);
+        const auto scene =
+            load_as(version, "<shape type='" + type + "'><string name='filename' value='" + file + "'/>" + properties +
+                                 "<bsdf type='diffuse'><texture type='checkerboard' "
+                                 "name='reflectance'/></bsdf></shape>");
+        return std::get<MeshDescription>(scene.shapes.at(0).geometry);
+    }
+
+    std::string message_of_shape(const std::string& file, const std::string& properties) const {
+        const std::string type = file.substr(file.find('.') + 1);
+        return message_of("<scene version='3.0.0'><sensor type='perspective'/><shape type='" + type +
+                          "'>\n<string name='filename' value='" + file + "'/>\n" + properties + "</shape></scene>");
+    }
+};
+
+VectorD normal_of(const MeshDescription& mesh, std::size_t triangle) {
+    const auto& vertices = mesh.triangles.at(triangle);
+    const VectorD& corner = mesh.positions[vertices.x];
+    return (mesh.positions[vertices.y] - corner).cross(mesh.positions[vertices.z] - corner).normalized();
+}
+
+/// Texture coordinates of the triangle's corner at (x, y).
+Imath::V2d texture_at(const MeshDescription& mesh, std::size_t triangle, double x, double y) {
+    const auto& vertices = mesh.triangles.at(triangle);
+    for (const std::uint32_t vertex : {vertices.x, vertices.y, vertices.z})
+        if (mesh.positions[vertex].x == x && mesh.positions[vertex].y == y) return mesh.texture_coordinates.at(vertex);
+    return Imath::V2d(-1.0);
+}
+
+// serialized.cpp of 0.6 and 3: the property alone, whatever the file's flag says.
+TEST_F(MeshesInScenes, SerializedHaveFaceNormalsWhereTheSceneAsksForThem) {
+    write("a.serialized", square_as_serialized(4, false, 0.0, with_normals | with_face_normals));
+    for (const std::string version : {"0.6.0", "3.0.0"}) {
+        EXPECT_EQ(mesh_of(version, "a.serialized", "").normals.at(0), VectorD(0, 0, 1)) << version;
+        EXPECT_TRUE(mesh_of(version, "a.serialized", "<boolean name='face_normals' value='true'/>").normals.empty());
+    }
+}
+
+// serialized.cpp of 0.6 exchanges the first two corners where to_world mirrors; its ply.cpp does not.
+TEST_F(MeshesInScenes, SerializedThatAreMirroredKeepTheirOutsideInBothFamilies) {
+    const std::string mirrored = "<transform name='to_world'><scale x='-1'/></transform>";
+    const std::string flipped = mirrored + "<boolean name='flip_normals' value='true'/>";
+    const std::string flat = "<boolean name='face_normals' value='true'/>";
+    write("a.serialized", square_as_serialized(4, true, 0.0, 0));
+    for (const std::string version : {"0.6.0", "3.0.0"})
+        for (const std::string& normals : {std::string(), flat}) {
+            EXPECT_EQ(normal_of(mesh_of(version, "a.serialized", mirrored + normals), 0), VectorD(0, 0, 1)) << version;
+            EXPECT_EQ(normal_of(mesh_of(version, "a.serialized", flipped + normals), 0), VectorD(0, 0, -1)) << version;
+        }
+    // The mirrored corners of the first triangle are (1, -1), (-1, -1) and (-1, 1). In 0.6 the first two are exchanged,
+    // and where face normals are flipped once more.
+    const auto expect_first_corners = [&](const std::string& properties, double first_x) {
+        const MeshDescription mesh = mesh_of("0.6.0", "a.serialized", properties);
+        EXPECT_EQ(texture_at(mesh, 0, first_x, -1), Imath::V2d(0, 0)) << properties;
+        EXPECT_EQ(texture_at(mesh, 0, -first_x, -1), Imath::V2d(1, 0)) << properties;
+        EXPECT_EQ(texture_at(mesh, 0, -1, 1), Imath::V2d(0, 1)) << properties;
+    };
+    expect_first_corners(mirrored, -1);
+    expect_first_corners(mirrored + flat, -1);
+    expect_first_corners(flipped, -1);
+    expect_first_corners(flipped + flat, 1);
+
+    std::string bare = square_as_ply("ascii");
+    for (const std::string name : {"nx", "ny", "nz", "u", "v"})
+        bare.replace(bare.find(" " + name + "\n"), name.size() + 2, " unknown_" + name + "\n");
+    write("a.ply", bare);
+    EXPECT_EQ(normal_of(mesh_of("0.6.0", "a.ply", mirrored + flat), 0), VectorD(0, 0, -1));
+    EXPECT_EQ(normal_of(mesh_of("3.0.0", "a.ply", mirrored + flat), 0), VectorD(0, 0, 1));
+}
+
+// ply.cpp of 0.6: the second triangle begins with the fourth corner. Texture coordinates that are made up tell.
+TEST_F(MeshesInScenes, PlyIsCutIntoTrianglesAsItsVersionDoes) {
+    std::string bare = square_as_ply("ascii");
+    for (const std::string name : {"u", "v"})
+        bare.replace(bare.find(" " + name + "\n"), name.size() + 2, " unknown_" + name + "\n");
+    write("a.ply", bare);
+    const MeshDescription old = mesh_of("0.6.0", "a.ply", "");
+    EXPECT_EQ(texture_at(old, 0, -1, -1), Imath::V2d(0, 0));
+    EXPECT_EQ(texture_at(old, 1, -1, 1), Imath::V2d(0, 0));
+    EXPECT_EQ(texture_at(old, 1, -1, -1), Imath::V2d(1, 0));
+    EXPECT_EQ(texture_at(old, 1, 1, 1), Imath::V2d(0, 1));
+    EXPECT_EQ(texture_at(mesh_of("3.0.0", "a.ply", ""), 1, -1, -1), Imath::V2d(0, 0));
+}
+
+TEST_F(MeshesInScenes, VerticesOfNoTriangleAreNoPartOfTheScene) {
+    std::string ply = square_as_ply("ascii");
+    ply.replace(ply.find("vertex 4"), 8, "vertex 5");
+    ply.insert(ply.find("4 0 1 2 3"), "1e9 0 0 0 0 1 0 0 255\n");
+    write("a.ply", ply);
+    const auto scene = load_as("3.0.0", "<shape type='ply'><string name='filename' value='a.ply'/></shape>");
+    EXPECT_EQ(build_scene(scene).unit_length, 2.0);
+    for (const std::string& note : scene.notes) EXPECT_EQ(note.find("far_clip"), note.npos) << note;
+}
+
+TEST_F(MeshesInScenes, PlyMayHaveNumbersAsProgramsWriteThem) {
+    std::string ply = square_as_ply("ascii");
+    ply.replace(ply.find("\n1 -1 "), 6, "\n+1.0 -1 1e-400 ");
+    ply.replace(ply.find("1e-400 ") + 7, 4, "");
+    write("a.ply", ply);
+    const MeshDescription mesh = mesh_of("3.0.0", "a.ply", "");
+    EXPECT_EQ(mesh.positions.at(1), VectorD(1, -1, 0));
+    ply.replace(ply.find("1e-400"), 6, "1e+400");
+    EXPECT_TRUE(refusal_of("a.ply", ply).ends_with(": expected a finite number, got \"1e+400\""));
+}
+
+TEST_F(MeshesInScenes, PlyListsHaveAWholeNumberOfEntries) {
+    std::string ply = square_as_ply("ascii");
+    ply.replace(ply.find("list uchar"), 10, "list float");
+    for (const std::string count : {"3.5", "-1", "nan"}) {
+        std::string face = ply;
+        face.replace(face.find("4 0 1 2 3"), 1, count);
+        const std::string message = "a.ply: expected a whole number of entries in a list, got " + count;
+        EXPECT_TRUE(refusal_of("a.ply", face).starts_with(message)) << refusal_of("a.ply", face);
+        std::string edge = ply;
+        edge.replace(edge.find("property int one"), 16, "property list float int one");
+        edge.replace(edge.find("\n7\n"), 3, "\n" + count + " 1 1 1\n");
+        EXPECT_TRUE(refusal_of("a.ply", edge).starts_with(message)) << refusal_of("a.ply", edge);
+    }
+}
+
+// Both families begin with shape 0 without a look at the dictionary.
+TEST_F(MeshesInScenes, SerializedOfOneShapeNeedNoDictionary) {
+    write("a.serialized", square_as_serialized(4, false, 0.0));
+    EXPECT_EQ(mesh_of("3.0.0", "a.serialized", "").triangles.size(), 2u);
+    write("a.serialized", file_of_two(4, false));
+    for (const std::string index : {"2", "-1"})
+        EXPECT_EQ(message_of_shape("a.serialized", "<integer name='shape_index' value='" + index + "'/>"),
+                  "scene.xml:3: shape_index: expected 0 to 1, got " + index);
+}
+
+TEST_F(MeshesInScenes, SerializedThatBeginBeyondTheirFileAreRefused) {
+    const std::string first = square_as_serialized(4, false, 0.0);
+    for (const std::uint64_t back : {1, 2, 3, 4}) {
+        write("a.serialized",
+              first + bytes_of<std::uint64_t>(0) + bytes_of<std::uint64_t>(0 - back) + bytes_of<std::uint32_t>(2));
+        EXPECT_EQ(message_of_shape("a.serialized", "<integer name='shape_index' value='1'/>"),
+                  "a.serialized: is cut off")
+            << back;
+    }
+}
+
+// Memory is asked for before it is taken, so that what does not fit is refused and not killed: files whose vertices
+// take a hundred times their bytes.
+TEST_F(MeshesInScenes, ThatNeedMoreMemoryThanThereIsAreRefused) {
+    constexpr std::uint64_t vertices = 8'000'000;  // 192 MB of positions
+    std::string body = bytes_of<std::uint32_t>(0x1000u) + '\0' + bytes_of(vertices) + bytes_of<std::uint64_t>(0);
+    body.resize(body.size() + 12 * vertices, '\0');
+    write("a.serialized", bytes_of<std::uint16_t>(0x041C) + bytes_of<std::uint16_t>(4) + deflated(body));
+    body.clear();
+    body.shrink_to_fit();
+    const auto read_with_little_memory = [&] {
+        std::ifstream pages("/proc/self/statm");
+        std::uint64_t size = 0;
+        pages >> size;
+        const rlim_t bytes = size * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) + (150u << 20);
+        const rlimit limit{bytes, bytes};
+        ::setrlimit(RLIMIT_AS, &limit);
+        std::fputs(message_of_shape("a.serialized", "").c_str(), stderr);
+        std::_Exit(0);
+    };
+    EXPECT_EXIT(read_with_little_memory(), ::testing::ExitedWithCode(0), "needs 183 MiB of memory");
+}
+
 // ---------------------------------------------------------------------------------------------------------------------
 
 class Cylinders : public SceneFolderTest {
@@ -234,6 +409,21 @@ TEST_F(Cylinders, AreMetFromOutsideAndFromWithin) {
     const auto across = intersect(scene, {to_box(scene, {-3, 0, 5}), Vector(VectorD(5, 0, -2).normalized())});
     ASSERT_TRUE(across);
     EXPECT_GT(across->geometric_normal.x, 0.9f);
+}
+
+// In 0.6 the normal is that of the two tangents, which a mirroring turns inwards; 3 flips it back.
+TEST_F(Cylinders, ThatAreMirroredAreTurnedInsideOutIn06Alone) {
+    const std::string mirrored = "<transform name='to_world'><scale x='-1'/></transform>";
+    const std::string flipped = "<boolean name='flip_normals' value='true'/>";
+    const auto outwards = [&](const std::string& version, const std::string& properties) {
+        const Scene scene = with(version, properties);
+        const auto hit = intersect(scene, {to_box(scene, {-5, 0, 0.5}), {1, 0, 0}});
+        return hit ? -hit->geometric_normal.x : 0.0f;
+    };
+    EXPECT_NEAR(outwards("3.0.0", mirrored), 1.0f, 1e-6f);
+    EXPECT_NEAR(outwards("3.0.0", mirrored + flipped), -1.0f, 1e-6f);
+    EXPECT_NEAR(outwards("0.6.0", mirrored), -1.0f, 1e-6f);
+    EXPECT_NEAR(outwards("0.6.0", mirrored + flipped), 1.0f, 1e-6f);
 }
 
 TEST_F(Cylinders, HaveMitsubasTextureCoordinates) {

@@ -69,12 +69,13 @@ CylinderDescription Cylinder::read(ShapeReader& reader) {
         std::abs(x.dot(z)) > rounding * size * z.length() || std::abs(y.dot(z)) > rounding * size * z.length())
         throw InputError(reader.properties.place_of("to_world"),
                          "cylinder: expected a transform that keeps it round and its ends across its axis");
-    const bool is_mirrored = handedness(reader.to_world) < 0.0 && !reader.is_version_06();
+    // Both families take the normal from the two tangents, which a mirroring turns inwards; 3 turns it back.
+    const bool is_turned_inwards = handedness(reader.to_world) < 0.0 && reader.is_version_06();
     return {.base = transform_point(reader.to_world, from),
             .radius = radius * size,
             .length = (to - from).length() * z.length(),
             .axes = {x.normalized(), y.normalized(), z.normalized()},
-            .flip_normals = reader.flip_normals != is_mirrored};
+            .flip_normals = reader.flip_normals != is_turned_inwards};
 }
 
 Cylinder CylinderDescription::placed(const ToUnitBox& to_unit_box, const ShapeUse&) const {

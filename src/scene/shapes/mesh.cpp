@@ -36,7 +36,8 @@ void MeshDescription::check(const std::string& place) const {
 
 Bounds MeshDescription::bounds() const {
     Bounds bounds;
-    for (const VectorD& position : positions) bounds.include(position);
+    for (const auto& triangle : triangles)
+        for (const std::uint32_t corner : {triangle.x, triangle.y, triangle.z}) bounds.include(positions[corner]);
     return bounds;
 }
 

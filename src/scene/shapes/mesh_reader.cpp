@@ -1,5 +1,6 @@
 #include "scene/shapes/mesh_reader.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -46,12 +47,15 @@ void add_barycentric_coordinates(MeshDescription& mesh, const CornerOrder& order
     }
 }
 
-/// For triangles that were turned: Mitsuba exchanges other corners than turn() does, 3 the first and last, 0.6 the
-/// first and second, and those only where it does not turn vertex normals instead.
-CornerOrder corner_order(MitsubaFamily family, bool is_turned, bool face_normals) {
-    if (!is_turned) return {0, 1, 2};
-    if (family == MitsubaFamily::Version3) return {1, 2, 0};
-    return face_normals ? CornerOrder{2, 0, 1} : CornerOrder{0, 2, 1};
+/// For triangles that turn() turned or Mitsuba did. It exchanges other corners, 3 the first and last, and 0.6 the first
+/// and second: where a mirroring is to keep the outside, and for flip_normals where it does not turn vertex normals
+/// instead.
+CornerOrder corner_order(const ShapeReader& reader, const MeshPlacing& placing, bool is_turned) {
+    if (!reader.is_version_06()) return is_turned ? CornerOrder{1, 2, 0} : CornerOrder{0, 1, 2};
+    const bool is_mirrored = placing.keeps_outside && handedness(reader.to_world) < 0.0;
+    const bool is_exchanged = is_mirrored != (placing.face_normals && reader.flip_normals);
+    if (!is_turned) return is_exchanged ? CornerOrder{1, 0, 2} : CornerOrder{0, 1, 2};
+    return is_exchanged ? CornerOrder{2, 0, 1} : CornerOrder{0, 2, 1};
 }
 
 /// In Mitsuba the normals of vertices, where a mesh has them, say which side of it is which; here that is the order of
@@ -67,16 +71,16 @@ void turn_to_normals(MeshDescription& mesh) {
 
 }  // namespace
 
-MeshDescription place_mesh(MeshDescription mesh, const ShapeReader& reader, bool face_normals) {
+MeshDescription place_mesh(MeshDescription mesh, const ShapeReader& reader, const MeshPlacing& placing) {
     const Matrix& to_world = reader.to_world;
     for (VectorD& position : mesh.positions) position = transform_point(to_world, position);
     for (VectorD& normal : mesh.normals)
         if (normal != VectorD(0.0)) normal = transform_normal(to_world, reader.flip_normals ? -normal : normal);
-    const bool is_turned = reader.is_version_06() ? reader.flip_normals : reader.turns_triangles();
+    const bool is_kept = placing.keeps_outside || !reader.is_version_06();
+    const bool is_turned = is_kept ? reader.turns_triangles() : reader.flip_normals;
     if (is_turned) std::for_each(mesh.triangles.begin(), mesh.triangles.end(), turn);
-    if (!face_normals) fill_in_normals(mesh);
-    if (reader.has_texture)
-        add_barycentric_coordinates(mesh, corner_order(reader.element.family(), is_turned, face_normals));
+    if (!placing.face_normals) fill_in_normals(mesh);
+    if (reader.has_texture) add_barycentric_coordinates(mesh, corner_order(reader, placing, is_turned));
     for (Imath::V2d& uv : mesh.texture_coordinates)
         if (std::isnan(uv.x)) uv = Imath::V2d(0.0);  // no triangle's, or seen by no texture
     if (!mesh.normals.empty()) turn_to_normals(mesh);

@@ -10,9 +10,13 @@ namespace photonlab {
 /// [Thuermer & Wuethrich 1998, "Computing Vertex Normals from Polygonal Facets"]
 void fill_in_normals(MeshDescription& mesh);
 
+struct MeshPlacing {
+    bool face_normals = false;   ///< no normals of vertices
+    bool keeps_outside = false;  ///< in 0.6 too, a mesh without normals that to_world mirrors is not turned inside out
+};
+
 /// Takes the mesh to the world, where normals that the file does not give (none, or 0) are computed, and texture
-/// coordinates that it does not give (none, or not a number) made up where its material needs some. A mirroring turns a
-/// mesh without normals inside out in 0.6, and not in 3.
-MeshDescription place_mesh(MeshDescription mesh, const ShapeReader& reader, bool face_normals);
+/// coordinates that it does not give (none, or not a number) made up where its material needs some.
+MeshDescription place_mesh(MeshDescription mesh, const ShapeReader& reader, const MeshPlacing& placing);
 
 }  // namespace photonlab

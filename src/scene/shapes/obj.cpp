@@ -323,8 +323,7 @@ private:
 
 }  // namespace
 
-ObjMesh read_obj_mesh(const std::filesystem::path& file, const ObjOptions& options) {
-    std::string text = read_whole_file(file, file.string());
+ObjMesh parse_obj_mesh(std::string text, const std::filesystem::path& file, const ObjOptions& options) {
     if (text.starts_with("\xef\xbb\xbf")) text.replace(0, 3, "   ");  // a byte order mark
     require_memory_for(file.string(), bytes_to_text_byte * text.size());
     const Counts counts = check_lines(text, file);
@@ -340,7 +339,8 @@ ObjMesh read_obj_mesh(const std::filesystem::path& file, const ObjOptions& optio
 }
 
 MeshDescription load_obj_mesh(const std::filesystem::path& file, bool face_normals) {
-    MeshDescription mesh = read_obj_mesh(file, {.face_normals = face_normals}).mesh;
+    MeshDescription mesh =
+        parse_obj_mesh(read_whole_file(file, file.string()), file, {.face_normals = face_normals}).mesh;
     if (!face_normals) fill_in_normals(mesh);
     return mesh;
 }
@@ -371,11 +371,11 @@ MeshDescription Obj::read(ShapeReader& reader) {
     options.face_normals = properties.boolean("face_normals").value_or(false);
     options.flip_v = properties.boolean("flip_tex_coords").value_or(true);
     if (reader.is_version_06()) options.separate_groups = !properties.boolean("collapse").value_or(false);
-    read_part(file, properties.place_of("filename"), reader.source.bytes_read);
-    ObjMesh obj = read_obj_mesh(file, options);
+    ObjMesh obj =
+        parse_obj_mesh(read_part(file, properties.place_of("filename"), reader.source.bytes_read), file, options);
     if (reader.is_version_06()) require_no_library(reader, obj);
     if (obj.mesh.triangles.empty()) reader.source.note(fmt::format("{}: has no faces", file.string()));
-    return place_mesh(std::move(obj.mesh), reader, options.face_normals);
+    return place_mesh(std::move(obj.mesh), reader, {.face_normals = options.face_normals});
 }
 
 }  // namespace photonlab

@@ -25,8 +25,8 @@ struct ObjMesh {
     std::string material_library;  ///< what the last mtllib names, or ""
 };
 
-/// Reads the file. Throws InputError with file and line.
-ObjMesh read_obj_mesh(const std::filesystem::path& file, const ObjOptions& options);
+/// The mesh of the file that has this text. Throws InputError with file and line.
+ObjMesh parse_obj_mesh(std::string text, const std::filesystem::path& file, const ObjOptions& options);
 
 struct Obj {
     static constexpr const char* name = "obj";

@@ -20,7 +20,7 @@ namespace {
 
 enum class Number { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float, Double };
 
-/// Both of the names that each has in files, and its bytes.
+/// Both of the names that each has in files, in the order of Number, and its bytes.
 struct NumberName {
     std::string_view old_name, name;
     Number number;
@@ -61,6 +61,10 @@ std::vector<std::string_view> words_of(std::string_view line) {
         at = end;
     }
     return words;
+}
+
+std::size_t bytes_of(Number number) {
+    return number_names[static_cast<std::size_t>(number)].bytes;
 }
 
 Number number_called(std::string_view name, const std::string& place) {
@@ -128,6 +132,31 @@ public:
 
     double next(Number number) { return format_ == Format::Text ? next_word() : next_binary(number); }
 
+    /// The number of entries of the list that follows, or 1 of what is no list.
+    std::uint64_t next_count(const Property& property) {
+        if (!property.count) return 1;
+        const double count = next(*property.count);
+        constexpr double most = 4294967295.0;
+        if (!(count >= 0.0 && count <= most && count == std::floor(count)))
+            fail(fmt::format("expected a whole number of entries in a list, got {}", count));
+        return static_cast<std::uint64_t>(count);
+    }
+
+    void require_memory(std::uint64_t bytes) const { require_memory_for(file_, bytes); }
+
+    /// Few bytes can claim any number of elements: refuses more than can be left, by the least bytes that each takes.
+    void require_bytes_for(const Element& element) const {
+        std::size_t least = 0;
+        for (const Property& property : element.properties)
+            least += format_ == Format::Text ? 2 : bytes_of(property.count.value_or(property.number));
+        const std::size_t left = text_.size() - at_;
+        // Behind the last word of a text there need not be a blank.
+        const std::size_t most = least == 0 ? 0 : (left + (format_ == Format::Text ? 1 : 0)) / least;
+        if (element.count > most)
+            throw InputError(file_, fmt::format("element {}: {} of them are more than its bytes can hold", element.name,
+                                                element.count));
+    }
+
     [[noreturn]] void fail(const std::string& message) const {
         throw InputError(file_, fmt::format("{} (byte {})", message, at_));
     }
@@ -138,10 +167,10 @@ private:
         const std::size_t begin = text_.find_first_not_of(blanks, at_);
         if (begin == text_.npos) fail("ends before its last element");
         const std::size_t end = std::min(text_.find_first_of(blanks, begin), text_.size());
-        const auto value = number_in<double>(text_.substr(begin, end - begin));
-        if (!value) fail(fmt::format("expected a number, got \"{}\"", excerpt(text_.substr(begin, end - begin))));
         at_ = end;
-        return *value;
+        const std::string_view word = text_.substr(begin, end - begin);
+        const auto value = number_in<double>(word);
+        return value ? *value : parse_number(word, fmt::format("{}: byte {}", file_, begin));
     }
 
     template <typename T>
@@ -196,6 +225,10 @@ std::optional<std::array<std::size_t, Count>> places_of(const Element& element,
     return places;
 }
 
+void pass_over(const Property& property, Numbers& numbers) {
+    for (std::uint64_t left = numbers.next_count(property); left > 0; --left) numbers.next(property.number);
+}
+
 void read_vertices(MeshDescription& mesh, const Element& element, Numbers& numbers) {
     const auto position = places_of<3>(element, {"x", "y", "z"});
     const auto normal = places_of<3>(element, {"nx", "ny", "nz"});
@@ -203,19 +236,24 @@ void read_vertices(MeshDescription& mesh, const Element& element, Numbers& numbe
     if (!texture) texture = places_of<2>(element, {"s", "t"});
     if (!texture) texture = places_of<2>(element, {"texture_u", "texture_v"});
     if (!position) numbers.fail("expected vertices with x, y and z");
+    const auto reserve = [&](auto& values) {
+        numbers.require_memory(element.count * sizeof(values[0]));
+        values.reserve(element.count);
+    };
+    reserve(mesh.positions);
+    if (normal) reserve(mesh.normals);
+    if (texture) reserve(mesh.texture_coordinates);
     std::vector<double> values(element.properties.size());
+    const auto vector = [&](const std::array<std::size_t, 3>& at) {
+        return VectorD(values[at[0]], values[at[1]], values[at[2]]);
+    };
     for (std::size_t i = 0; i < element.count; ++i) {
         for (std::size_t p = 0; p < values.size(); ++p) {
-            const Property& property = element.properties[p];
-            if (property.count) {
-                for (double left = numbers.next(*property.count); left >= 1.0; --left) numbers.next(property.number);
-            } else {
-                values[p] = numbers.next(property.number);
-            }
+            if (element.properties[p].count)
+                pass_over(element.properties[p], numbers);
+            else
+                values[p] = numbers.next(element.properties[p].number);
         }
-        const auto vector = [&](const std::array<std::size_t, 3>& at) {
-            return VectorD(values[at[0]], values[at[1]], values[at[2]]);
-        };
         mesh.positions.push_back(vector(*position));
         if (!is_finite(mesh.positions.back())) numbers.fail(fmt::format("vertex {} is not finite", i + 1));
         if (normal) mesh.normals.push_back(vector(*normal).normalized());
@@ -223,61 +261,88 @@ void read_vertices(MeshDescription& mesh, const Element& element, Numbers& numbe
     }
 }
 
-void read_faces(MeshDescription& mesh, const Element& element, std::size_t vertices, Numbers& numbers) {
-    bool has_corners = false;
-    for (std::size_t face = 0; face < element.count; ++face)
-        for (const Property& property : element.properties) {
-            const bool is_corners =
-                property.count && (property.name == "vertex_indices" || property.name == "vertex_index");
-            has_corners = has_corners || is_corners;
-            const double count = property.count ? numbers.next(*property.count) : 1.0;
-            std::uint32_t first = 0, last = 0;
-            for (std::size_t corner = 0; static_cast<double>(corner) < count; ++corner) {
-                const double value = numbers.next(property.number);
-                if (!is_corners) continue;
-                if (!(value >= 0.0 && value < static_cast<double>(vertices) && value == std::floor(value)))
-                    numbers.fail(fmt::format("face {}: expected vertices below {}, got {}", face + 1, vertices, value));
-                const auto index = static_cast<std::uint32_t>(value);
-                if (corner == 0) first = index;
-                if (corner >= 2) mesh.triangles.emplace_back(first, last, index);
-                last = index;
-            }
-        }
-    if (element.count > 0 && !has_corners) numbers.fail("expected faces with a list vertex_indices");
-}
+/// The faces of a file whose vertices are known in number.
+class FaceReader {
+public:
+    FaceReader(MeshDescription& mesh, std::size_t vertices, Numbers& numbers, MitsubaFamily family)
+        : triangles_(mesh.triangles), vertices_(vertices), numbers_(numbers), family_(family) {}
 
-void pass_over(const Element& element, Numbers& numbers) {
-    for (std::size_t i = 0; i < element.count; ++i)
-        for (const Property& property : element.properties)
-            for (double left = property.count ? numbers.next(*property.count) : 1.0; left >= 1.0; --left)
-                numbers.next(property.number);
-}
+    void read(const Element& element) {
+        const auto is_corners = [](const Property& property) {
+            return property.count && (property.name == "vertex_indices" || property.name == "vertex_index");
+        };
+        if (element.count > 0 && std::none_of(element.properties.begin(), element.properties.end(), is_corners))
+            numbers_.fail("expected faces with a list vertex_indices");
+        reserve(element.count);
+        for (face_ = 1; face_ <= element.count; ++face_)
+            for (const Property& property : element.properties) {
+                if (is_corners(property))
+                    read_polygon(property);
+                else
+                    pass_over(property, numbers_);
+            }
+    }
+
+private:
+    void reserve(std::size_t count) {
+        numbers_.require_memory(count * sizeof(triangles_[0]));
+        triangles_.reserve(count);
+    }
+
+    std::uint32_t next_corner(const Property& property) {
+        const double value = numbers_.next(property.number);
+        if (!(value >= 0.0 && value < static_cast<double>(vertices_) && value == std::floor(value)))
+            numbers_.fail(fmt::format("face {}: expected vertices below {}, got {}", face_, vertices_, value));
+        return static_cast<std::uint32_t>(value);
+    }
+
+    void read_polygon(const Property& property) {
+        const std::uint64_t count = numbers_.next_count(property);
+        const bool begins_with_last = count == 4 && family_ == MitsubaFamily::Version06;
+        std::uint32_t first = 0, last = 0;
+        for (std::uint64_t corner = 0; corner < count; ++corner) {
+            const std::uint32_t vertex = next_corner(property);
+            if (corner == 0) first = vertex;
+            if (corner >= 2) {
+                if (triangles_.size() == triangles_.capacity()) reserve(2 * triangles_.size() + 1);
+                if (corner == 3 && begins_with_last)
+                    triangles_.emplace_back(vertex, first, last);
+                else
+                    triangles_.emplace_back(first, last, vertex);
+            }
+            last = vertex;
+        }
+    }
+
+    std::vector<Imath::Vec3<std::uint32_t>>& triangles_;
+    const std::size_t vertices_;
+    Numbers& numbers_;
+    const MitsubaFamily family_;
+    std::size_t face_ = 0;  // counted from 1
+};
 
 }  // namespace
 
-MeshDescription read_ply_mesh(const std::filesystem::path& file) {
-    const std::string name = file.string();
-    const std::string text = read_whole_file(file, name);
-    constexpr std::uint64_t bytes_to_byte = 6;  // of a mesh, to each of its file
-    require_memory_for(name, bytes_to_byte * text.size());
-    const Header header = read_header(text, name);
-    Numbers numbers(text, header, name);
+MeshDescription parse_ply_mesh(std::string_view bytes, const std::string& file, MitsubaFamily family) {
+    const Header header = read_header(bytes, file);
+    Numbers numbers(bytes, header, file);
     MeshDescription mesh;
     std::size_t vertices = 0;
     for (const Element& element : header.elements)
         if (element.name == "vertex") vertices = element.count;
     for (const Element& element : header.elements) {
-        // A few bytes can claim any number of elements, and an element without properties takes none.
         if (element.properties.empty() && element.count > 0)
-            throw InputError(name, fmt::format("element {} has no properties", element.name));
+            throw InputError(file, fmt::format("element {} has no properties", element.name));
+        numbers.require_bytes_for(element);
         if (element.name == "vertex")
             read_vertices(mesh, element, numbers);
         else if (element.name == "face")
-            read_faces(mesh, element, vertices, numbers);
+            FaceReader(mesh, vertices, numbers, family).read(element);
         else
-            pass_over(element, numbers);
+            for (std::size_t i = 0; i < element.count; ++i)
+                for (const Property& property : element.properties) pass_over(property, numbers);
     }
-    if (mesh.positions.size() != vertices) throw InputError(name, "expected one element called vertex");
+    if (mesh.positions.size() != vertices) throw InputError(file, "expected one element called vertex");
     return mesh;
 }
 
@@ -286,13 +351,13 @@ MeshDescription Ply::read(ShapeReader& reader) {
     const std::filesystem::path file = reader.require_file();
     const bool face_normals = properties.boolean("face_normals").value_or(false);
     const bool flips = !reader.is_version_06() && properties.boolean("flip_tex_coords").value_or(false);
-    read_part(file, properties.place_of("filename"), reader.source.bytes_read);
-    MeshDescription mesh = read_ply_mesh(file);
+    MeshDescription mesh = parse_ply_mesh(read_part(file, properties.place_of("filename"), reader.source.bytes_read),
+                                          file.string(), reader.element.family());
     if (face_normals) mesh.normals.clear();
     if (flips)
         for (Imath::V2d& uv : mesh.texture_coordinates) uv.y = 1.0 - uv.y;
     if (mesh.triangles.empty()) reader.source.note(fmt::format("{}: has no faces", file.string()));
-    return place_mesh(std::move(mesh), reader, face_normals);
+    return place_mesh(std::move(mesh), reader, {.face_normals = face_normals});
 }
 
 }  // namespace photonlab

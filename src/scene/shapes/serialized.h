@@ -2,19 +2,22 @@
 
 #pragma once
 
-#include <filesystem>
+#include <string>
+#include <string_view>
 
 #include "scene/shapes/mesh_reader.h"
 
 namespace photonlab {
 
-struct SerializedMesh {
-    MeshDescription mesh;
-    bool face_normals = false;  ///< what the file asks for
+/// Which mesh of a file.
+struct MeshInFile {
+    std::string file;   ///< for messages
+    long index = 0;     ///< counted from 0
+    std::string place;  ///< "file:line" of what asks for that one
 };
 
-/// Reads one mesh of the file, versions 3 and 4, counted from 0. Throws InputError.
-SerializedMesh read_serialized_mesh(const std::filesystem::path& file, long index);
+/// One mesh of the file that has these bytes, of versions 3 and 4. Throws InputError.
+MeshDescription parse_serialized_mesh(std::string_view bytes, const MeshInFile& which);
 
 struct Serialized {
     static constexpr const char* name = "serialized";
