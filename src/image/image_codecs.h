@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace photonlab {
@@ -19,9 +20,13 @@ struct DecodedImage {
     std::vector<float> values;       ///< width * height * channels
 };
 
+/// require_memory_for(), which the library does not have.
+using RequireMemory = void (*)(const std::string& place, std::uint64_t bytes);
+
 struct ImageCodecs {
-    /// Reads a BMP, EXR, HDR, JPEG, PNG, TGA or TIFF of at most 2^26 pixels. Throws InputError.
-    DecodedImage (*read)(const std::filesystem::path& file);
+    /// Reads a BMP, EXR, HDR, JPEG, PNG, TGA or TIFF of at most 2^26 pixels, whose memory is asked for before it is
+    /// taken. Throws InputError.
+    DecodedImage (*read)(const std::filesystem::path& file, RequireMemory require_memory);
 
     /// Writes 8-bit sRGB to `temporary`; `file` is its name in messages. Throws InputError.
     void (*write_png)(const std::filesystem::path& temporary, const std::filesystem::path& file, int width, int height,

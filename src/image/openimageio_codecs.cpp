@@ -45,7 +45,7 @@ void require_sound(const std::filesystem::path& file, const OIIO::ImageSpec& spe
                                                     spec.width, spec.height, bytes));
 }
 
-DecodedImage read(const std::filesystem::path& file) {
+DecodedImage read(const std::filesystem::path& file, RequireMemory require_memory) {
     std::string ending = file.extension().string();
     for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     const auto reader = readers().find(ending);
@@ -59,6 +59,10 @@ DecodedImage read(const std::filesystem::path& file) {
     require_sound(file, spec);
     const int channels = spec.nchannels < 3 ? 1 : 3;  // of grey, or of colour: alpha and others are left out
     DecodedImage image{spec.width, spec.height, channels, spec.format.is_floating_point(), {}};
+    const std::size_t bytes_to_pixel =
+        sizeof(float) * static_cast<std::size_t>(channels + 3);  // and of what it becomes
+    require_memory(file.string(),
+                   bytes_to_pixel * static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height));
     image.values.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
                         static_cast<std::size_t>(channels));
     if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, image.values.data()))

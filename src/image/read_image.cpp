@@ -1,6 +1,7 @@
 #include "image/read_image.h"
 
 #include "core/files/files.h"
+#include "core/machine/available_memory.h"
 #include "image/image_codecs.h"
 
 namespace photonlab {
@@ -11,7 +12,7 @@ double srgb_to_linear(double value) {
 
 ColorImage read_color_image(const std::filesystem::path& file, bool raw) {
     require_ordinary_file(file);
-    const DecodedImage decoded = image_codecs().read(file);
+    const DecodedImage decoded = image_codecs().read(file, require_memory_for);
     const auto channels = static_cast<std::size_t>(decoded.channels);
     const std::size_t count = decoded.values.size() / channels;
     const bool decode = !raw && !decoded.is_floating_point;

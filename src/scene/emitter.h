@@ -26,8 +26,9 @@ struct EmissionSample {
 EmissionSample sample_emission(const Scene& scene, std::uint32_t emitter, const Imath::V2f& u_position,
                                double u_triangle, const Imath::V2f& u_direction);
 
-/// Draws a point on `emitter` to light `receiver`: spheres by the solid angle of their visible cap, other shapes
-/// uniform in area. Empty when the point drawn does not face the receiver.
+/// Draws light of `emitter` for `receiver`: of spheres by the solid angle of their visible cap, of other shapes uniform
+/// in area, of an image around the scene by its brightness, of one colour around it by solid angle; of what has no size
+/// the one direction. Empty when what was drawn does not shine at the receiver.
 std::optional<DirectSample> sample_direct(const Scene& scene, std::uint32_t emitter, const Vector& receiver,
                                           const Imath::V2f& u, double u_triangle);
 

@@ -44,7 +44,7 @@ public:
             } else if (element.tag == "shape") {
                 add_shape(element);
             } else if (element.tag == "emitter") {
-                if (!is_for_shapes(element)) scene_.lights.push_back(read_scene_light(element, source()));
+                if (!is_for_shapes(element)) add_light(element);
             } else if (element.tag == "integrator") {
                 read_integrator(element);
                 has_integrator = true;
@@ -141,7 +141,7 @@ private:
     SceneSource source() {
         return {.resolve = [this](const XmlElement& other) -> const XmlElement& { return resolve(other); },
                 .bytes_read = bytes_read_,
-                .texture_pixels = texture_pixels_,
+                .image_pixels = image_pixels_,
                 .note = [this](const std::string& sentence) { note(sentence); },
                 .images = images_};
     }
@@ -228,6 +228,12 @@ private:
                !element.attribute("id").empty();
     }
 
+    /// A second light around the scene is refused at once: its image may be large, and a file can name very many.
+    void add_light(const XmlElement& element) {
+        scene_.lights.push_back(read_scene_light(element, source()));
+        if (is_environment(scene_.lights.back())) require_one_environment(scene_.lights);
+    }
+
     // -----------------------------------------------------------------------------------------------------------------
     // Camera, and what speaks to other programs
 
@@ -288,8 +294,8 @@ private:
         FilmCrop crop;
         crop.x = pixels("crop_offset_x", 0, camera.width - 1, 0);
         crop.y = pixels("crop_offset_y", 0, camera.height - 1, 0);
-        crop.width = pixels("crop_width", 1, camera.width - crop.x, camera.width - crop.x);
-        crop.height = pixels("crop_height", 1, camera.height - crop.y, camera.height - crop.y);
+        crop.width = pixels("crop_width", 1, camera.width - crop.x, camera.width);
+        crop.height = pixels("crop_height", 1, camera.height - crop.y, camera.height);
         if (crop.width != camera.width || crop.height != camera.height) camera.crop = crop;
     }
 
@@ -381,11 +387,12 @@ private:
         bool is_too_far = false;
         for (const ShapeDescription& shape : scene_.shapes) {
             if (const auto* mesh = std::get_if<MeshDescription>(&shape.geometry)) {
-                for (const VectorD& vertex : mesh->positions) {
-                    const double depth = (vertex - position).dot(forward);
-                    is_too_near = is_too_near || (depth > 0.0 && depth < near_clip_);
-                    is_too_far = is_too_far || depth > far_clip_;
-                }
+                for (const auto& triangle : mesh->triangles)
+                    for (const std::uint32_t corner : {triangle.x, triangle.y, triangle.z}) {
+                        const double depth = (mesh->positions[corner] - position).dot(forward);
+                        is_too_near = is_too_near || (depth > 0.0 && depth < near_clip_);
+                        is_too_far = is_too_far || depth > far_clip_;
+                    }
             } else {
                 const Bounds bounds = bounds_of(shape.geometry);
                 const VectorD size = bounds.upper - bounds.lower;
@@ -405,7 +412,7 @@ private:
     std::set<std::string> noted_;  // scene_.notes
     double near_clip_ = 1e-2;      // of the camera
     double far_clip_ = 1e4;
-    std::size_t texture_pixels_ = 0;
+    std::size_t image_pixels_ = 0;
     std::map<std::string, std::shared_ptr<const ColorImage>> images_;
     std::map<std::string, const XmlElement*> by_id_;
     std::map<const XmlElement*, std::size_t> materials_;

@@ -29,18 +29,6 @@ namespace {
     throw InputError(place, message);
 }
 
-void require_one_environment(const SceneDescription& description) {
-    const std::string* first = nullptr;
-    for (const LightDescription& light : description.lights) {
-        if (!is_environment(light)) continue;
-        if (first)
-            throw InputError(
-                place_of(light),
-                fmt::format("expected one light around the scene, got a second; the first is at {}", *first));
-        first = &place_of(light);
-    }
-}
-
 void require_valid(const SceneDescription& description) {
     for (const Material& material : description.materials) require_valid(material);
     for (const ShapeDescription& shape : description.shapes) {
@@ -51,7 +39,7 @@ void require_valid(const SceneDescription& description) {
         require_valid(shape.geometry, shape.place);
     }
     for (const LightDescription& light : description.lights) require_valid(light);
-    require_one_environment(description);
+    require_one_environment(description.lights);
 }
 
 void include(Bounds& bounds, const Bounds& other) {
@@ -159,6 +147,8 @@ Camera make_camera(const CameraDescription& description, std::optional<Resolutio
             .focus_distance = description.focus_distance / to_unit_box.unit_length};
 }
 
+constexpr const char* power_overflows = "the emitted power overflows double precision; scale the lights down";
+
 /// Lists the lights that have power, and with which probability each is chosen. Ratios of power, not power, so that
 /// light times a constant changes no choice.
 void add_emitters(Scene& scene, const SceneDescription& description, const SceneExtent& extent) {
@@ -166,6 +156,7 @@ void add_emitters(Scene& scene, const SceneDescription& description, const Scene
     std::vector<double> weights;  // power as often as it is chosen for it
     const auto add = [&](const Light& light, const std::string& place, double sampling_weight) {
         const ColorD power = std::visit([&](const auto& kind) { return kind.power(scene.shapes); }, light);
+        if (!std::isfinite(mean_channel(power))) fail(place, power_overflows);
         if (!(mean_channel(power) > 0.0)) return false;
         scene.emitters.push_back({light, power, 0.0, 0.0});
         places.push_back(place);
@@ -190,8 +181,7 @@ void add_emitters(Scene& scene, const SceneDescription& description, const Scene
         const auto brightest = std::max_element(
             scene.emitters.begin(), scene.emitters.end(),
             [](const Emitter& a, const Emitter& b) { return mean_channel(a.power) < mean_channel(b.power); });
-        throw InputError(places[static_cast<std::size_t>(brightest - scene.emitters.begin())],
-                         "the emitted power overflows double precision; scale the lights down");
+        throw InputError(places[static_cast<std::size_t>(brightest - scene.emitters.begin())], power_overflows);
     }
     double running = 0.0;
     for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -209,29 +199,52 @@ double size_of(const Bounds& bounds) {
     return bounds.is_empty() ? 0.0 : std::max({extent.x, extent.y, extent.z});
 }
 
+/// Whether the camera sees them large: under an angle of at least a fortieth of its field of view, as a usual lens sees
+/// them from up to fifty of their sizes away.
+bool is_looked_at(const Bounds& bounds, const CameraDescription& camera) {
+    constexpr double least_share = 1.0 / 40.0;
+    const double size = size_of(bounds);
+    const VectorD eye(camera.to_world[3][0], camera.to_world[3][1], camera.to_world[3][2]);
+    const double distance = ((bounds.lower + bounds.upper) * 0.5 - eye).length();
+    return size > 0.0 && 2.0 * std::atan2(0.5 * size, distance) > least_share * camera.fov_x * pi / 180.0;
+}
+
 /// The surfaces that the unit box is made for: all, or all but outsized ones such as a ground that goes on to the
-/// horizon. Those are more than a hundred times as large as all that are smaller together, where the camera stands
-/// among the smaller ones.
+/// horizon, which are that many times as large as all that are smaller together, where the camera looks at the smaller
+/// ones. Light from infinity would hardly hit what is a hundredth of everything, which matters for all but lights.
+/// Floats would not resolve the picture of what is a ten thousandth. Of several such gaps the innermost counts.
 Bounds bounds_without_outsized(const SceneDescription& description) {
-    constexpr double outsized = 100.0;
-    constexpr double near = 20.0;  // sizes, from the camera to the middle of the smaller ones
-    std::vector<Bounds> shapes;
-    for (const ShapeDescription& shape : description.shapes) shapes.push_back(bounds_of(shape.geometry));
-    std::stable_sort(shapes.begin(), shapes.end(),
-                     [](const Bounds& a, const Bounds& b) { return size_of(a) < size_of(b); });
-    const Matrix& camera = description.camera.to_world;
-    const VectorD eye(camera[3][0], camera[3][1], camera[3][2]);
-    Bounds smaller;
-    Bounds chosen;
-    for (const Bounds& shape : shapes) {
-        const double size = size_of(smaller);
-        if (size > 0.0 && size_of(shape) > outsized * size &&
-            ((smaller.lower + smaller.upper) * 0.5 - eye).length() < near * size)
-            chosen = smaller;
-        include(smaller, shape);
-    }
+    constexpr double outsized_for_light = 1e2;
+    constexpr double outsized_for_floats = 1e4;
     constexpr double farthest = 1e9;  // sizes that floats around the smaller ones still tell apart from infinity
-    return chosen.is_empty() || size_of(smaller) > farthest * size_of(chosen) ? smaller : chosen;
+    const bool has_light_from_infinity =
+        std::any_of(description.lights.begin(), description.lights.end(),
+                    [](const LightDescription& light) { return bounds_of(light).is_empty(); });
+    struct Sized {
+        Bounds bounds;
+        bool emits;
+    };
+    std::vector<Sized> shapes;
+    Bounds all;
+    for (const ShapeDescription& shape : description.shapes) {
+        shapes.push_back({bounds_of(shape.geometry), shape.radiance.has_value()});
+        include(all, shapes.back().bounds);
+    }
+    std::stable_sort(shapes.begin(), shapes.end(),
+                     [](const Sized& a, const Sized& b) { return size_of(a.bounds) < size_of(b.bounds); });
+    Bounds smaller, smaller_without_lights;
+    for (const Sized& shape : shapes) {
+        const auto is_outsized_for = [&](const Bounds& inside, double times) {
+            return size_of(shape.bounds) > times * size_of(inside) && size_of(all) <= farthest * size_of(inside) &&
+                   is_looked_at(inside, description.camera);
+        };
+        if (has_light_from_infinity && is_outsized_for(smaller_without_lights, outsized_for_light))
+            return smaller_without_lights;
+        if (is_outsized_for(smaller, outsized_for_floats)) return smaller;
+        include(smaller, shape.bounds);
+        if (!shape.emits) include(smaller_without_lights, shape.bounds);
+    }
+    return all;
 }
 
 /// Balls around both, in the unit box.

@@ -18,7 +18,7 @@ void read_scene(const std::filesystem::path& file) {
 }
 
 TEST(SceneMistakes, EachGetsItsMessage) {
-    expect_messages("scene", ".xml", 187, read_scene);
+    expect_messages("scene", ".xml", 190, read_scene);
 }
 
 TEST(MeshMistakes, EachGetsItsMessage) {
@@ -129,6 +129,15 @@ TEST(SceneMistakes, FilesThatGrowWithoutEndAreRefused) {
     const std::string long_value = "<float name='radius' value='" + std::string(10'000'000, '1') + "'/>";
     EXPECT_EQ(message("<scene version='3.0.0'>\n<shape type='sphere'>" + long_value + "</shape></scene>"),
               "scene.xml:2: expected at most 65536 characters in a value");
+
+    std::string chain;
+    for (int i = 0; i < 100'000; ++i)
+        chain += "<texture type='scale' id='t" + std::to_string(i) + "'><ref id='t" + std::to_string(i + 1) +
+                 "'/></texture>";
+    EXPECT_EQ(message("<scene version='0.6.0'>" + sensor + chain +
+                      "<texture type='checkerboard' id='t100000'/><bsdf type='diffuse'><ref name='reflectance' "
+                      "id='t0'/></bsdf></scene>"),
+              "scene.xml:1: expected at most 16 textures inside each other");
 
     std::string doubling = "<default name='a0' value='0123456789'/>";
     for (int i = 1; i < 40; ++i) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "image/read_image.h"
 #include "scene/emitter.h"
 #include "tests/scene/described.h"
 #include "tests/scene/scene_folder.h"
@@ -197,6 +198,46 @@ TEST(UnitBox, IsMadeForWhatStandsOnAPlain) {
     EXPECT_NEAR(build_scene(description).unit_length, 8e6, 1.0);
 }
 
+/// A square of that size at the origin, and a camera that looks down on it from `distance`.
+SceneDescription seen_from(double distance, double fov_degrees, std::vector<ShapeDescription> shapes) {
+    SceneDescription description = describe(std::move(shapes));
+    description.camera.to_world = Matrix(1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, distance, 1);
+    description.camera.fov_x = fov_degrees;
+    description.lights = {ConstantDescription{.radiance = ColorD(1.0), .place = "test:1"}};
+    return description;
+}
+
+ShapeDescription flat(double size, double height = 0.0) {
+    return shape(square({0, 0, height}, {0.5 * size, 0, 0}, {0, 0.5 * size, 0}));
+}
+
+// What a narrow view shows large is what the scene is about, from however far.
+TEST(UnitBox, IsMadeForWhatALongLensShows) {
+    EXPECT_NEAR(build_scene(seen_from(25.0, 5.0, {flat(1.0), flat(8e6, -1.0)})).unit_length, 1.0, 1e-9);
+    EXPECT_NEAR(build_scene(seen_from(300.0, 0.5, {flat(1.0), flat(8e6, -1.0)})).unit_length, 1.0, 1e-9);
+    EXPECT_NEAR(build_scene(seen_from(300.0, 60.0, {flat(1.0), flat(8e6, -1.0)})).unit_length, 8e6, 1.0);
+}
+
+TEST(UnitBox, IsMadeForTheInnermostThatIsSeen) {
+    EXPECT_NEAR(build_scene(seen_from(3.0, 40.0, {flat(1.0), flat(300.0, -1.0), flat(1e6, -2.0)})).unit_length, 1.0,
+                1e-9);
+    EXPECT_NEAR(build_scene(seen_from(300.0, 40.0, {flat(1.0), flat(300.0, -1.0), flat(1e6, -2.0)})).unit_length, 300.0,
+                1e-6);
+}
+
+// A lamp or a trinket close to the camera does not make the room around it a surrounding.
+TEST(UnitBox, HoldsTheRoomAroundASmallLamp) {
+    const ShapeDescription room = shape(cube({0, 0, 0}, 2.0));
+    const ShapeDescription lamp = shape(SphereDescription{.centre = {0, 0, 0.9}, .radius = 0.01}, ColorD(1.0));
+    EXPECT_EQ(build_scene(seen_from(1.0, 40.0, {room, lamp})).unit_length, 4.0);
+    SceneDescription trinket = seen_from(1.0, 40.0, {room, shape(lamp.geometry)});
+    trinket.lights = {PointLightDescription{.position = {0, 0, 1.5}, .intensity = ColorD(1.0), .place = "test:1"}};
+    EXPECT_EQ(build_scene(trinket).unit_length, 4.0);
+    // On a plain beyond what floats resolve it is what the scene is about all the same.
+    SceneDescription lamp_on_a_plain = seen_from(1.0, 40.0, {flat(8e6), lamp});
+    EXPECT_NEAR(build_scene(lamp_on_a_plain).unit_length, 0.02, 1e-9);
+}
+
 // ---------------------------------------------------------------------------------------------------------------------
 
 class LightsInFiles : public SceneFolderTest {};
@@ -232,6 +273,91 @@ TEST_F(LightsInFiles, OfTheSkyAreRefusedWithTheWayRound) {
                   "scene.xml:2: emitter \"" + kind +
                       "\": models of the sky are not built in; an image of it can light the scene: <emitter "
                       "type=\"envmap\"> with a filename");
+}
+
+/// An image of one grey in 8 bits, as a TGA, and one of radiances, as an HDR.
+class SurroundingsInFiles : public LightsInFiles {
+protected:
+    void SetUp() override {
+        LightsInFiles::SetUp();
+        std::string tga(18, '\0');
+        tga[2] = 2;  // without compression, in colour
+        tga[12] = 4;
+        tga[14] = 2;
+        tga[16] = 24;
+        write("grey.tga", tga + std::string(4 * 2 * 3, '\x80'));
+        std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n";
+        for (int i = 0; i < 8; ++i) hdr += "\x80\x80\x80\x82";  // 2
+        write("two.hdr", hdr);
+    }
+
+    double radiance(const std::string& version, const std::string& file, const std::string& properties) const {
+        const auto scene = load_as(version, "<emitter type='envmap'><string name='filename' value='" + file + "'/>" +
+                                                properties + "</emitter>");
+        return std::get<EnvironmentMapDescription>(scene.lights.at(0)).image->radiance({0, 0, 1}).x;
+    }
+};
+
+// envmap.cpp of 0.6: gamma in place of the file's own; 1 is linear whatever the file, -1 is sRGB.
+TEST_F(SurroundingsInFiles, AreDecodedByTheirGamma) {
+    const auto gamma = [](const std::string& value) { return "<float name='gamma' value='" + value + "'/>"; };
+    constexpr double grey = 128.0 / 255.0;
+    EXPECT_NEAR(radiance("3.0.0", "grey.tga", ""), srgb_to_linear(grey), 1e-6);
+    EXPECT_NEAR(radiance("0.6.0", "grey.tga", ""), srgb_to_linear(grey), 1e-6);
+    EXPECT_NEAR(radiance("0.6.0", "grey.tga", gamma("1")), grey, 1e-6);
+    EXPECT_NEAR(radiance("0.6.0", "grey.tga", gamma("-1")), srgb_to_linear(grey), 1e-6);
+    EXPECT_NEAR(radiance("0.6.0", "grey.tga", gamma("2.2")), std::pow(grey, 2.2), 1e-6);
+    EXPECT_NEAR(radiance("0.6.0", "two.hdr", gamma("1")), 2.0, 1e-6);
+    EXPECT_NEAR(radiance("0.6.0", "two.hdr", ""), 2.0, 1e-6);
+    EXPECT_NEAR(radiance("3.0.0", "two.hdr", ""), 2.0, 1e-6);
+}
+
+// Each is large, so the second is refused where the file is read.
+TEST_F(SurroundingsInFiles, AreOnceInAFile) {
+    const std::string map = "<emitter type='envmap'><string name='filename' value='two.hdr'/></emitter>\n";
+    EXPECT_EQ(message_of("<scene version='3.0.0'><sensor type='perspective'/>\n" + map + map + map + "</scene>"),
+              "scene.xml:3: expected one light around the scene, got a second; the first is at scene.xml:2");
+}
+
+TEST_F(SurroundingsInFiles, AreRefusedWithThePlaceOfWhatIsWrong) {
+    const auto refusal = [&](const std::string& file, const std::string& transform) {
+        return message_of(
+            "<scene version='3.0.0'><sensor type='perspective'/>\n<emitter type='envmap'>\n"
+            "<string name='filename' value='" +
+            file + "'/>\n<transform name='to_world'>" + transform + "</transform></emitter></scene>");
+    };
+    EXPECT_EQ(refusal("two.hdr", "<rotate z='1' angle='45'/><scale x='2' z='1.5811388300841898'/>"),
+              "scene.xml:4: to_world: expected a transform without shear, whose axes stay at right angles");
+    write("text.hdr", "text");
+    EXPECT_TRUE(refusal("text.hdr", "").starts_with("scene.xml:3: text.hdr: "));
+    EXPECT_EQ(refusal("two.hdr", ""), "no error");
+}
+
+TEST_F(LightsInFiles, AreTurnedAndNotStretched) {
+    const std::string light = "<emitter type='directional'>\n<transform name='to_world'>";
+    const auto refusal = [&](const std::string& version, const std::string& transform) {
+        return message_of("<scene version='" + version + "'><sensor type='perspective'/>" + light + transform +
+                          "</transform></emitter></scene>");
+    };
+    EXPECT_EQ(refusal("3.0.0", "<scale x='2'/>"),
+              "scene.xml:2: to_world: expected a transform that scales alike along all axes");
+    EXPECT_EQ(refusal("3.0.0", "<scale z='0'/>").substr(0, 12), "scene.xml:2:");
+    const auto notes = [&](const std::string& transform) {
+        return load_as("3.0.0", light + transform + "</transform></emitter>").notes;
+    };
+    EXPECT_TRUE(notes("<rotate x='1' angle='30'/>").empty());
+    EXPECT_TRUE(notes("<scale x='-1'/>").empty());
+    ASSERT_EQ(notes("<scale value='2'/>").size(), 1u);
+    EXPECT_EQ(notes("<scale value='2'/>")[0],
+              "emitter \"directional\": the scale of its to_world, 2, changes nothing of a light");
+}
+
+TEST_F(LightsInFiles, OfOneColourMayBeTurned) {
+    const auto scene = load_as("3.0.0",
+                               "<emitter type='constant'><transform name='to_world'><rotate x='1' angle='90'/>"
+                               "</transform></emitter>");
+    ASSERT_EQ(scene.notes.size(), 1u);
+    EXPECT_EQ(scene.notes[0], "emitter \"constant\": not read: to_world: it is the same from everywhere");
 }
 
 }  // namespace

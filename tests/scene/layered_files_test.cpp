@@ -229,6 +229,40 @@ TEST_F(TexturesInFiles, AreScaled) {
                 1e-6);
 }
 
+// A factor above 1 is right where what it scales is dark enough.
+TEST_F(TexturesInFiles, AreScaledUpToAReflectance) {
+    write_image();
+    const auto refusal = [&](const std::string& factor, const std::string& inside) {
+        return message_of(
+            "<scene version='0.6.0'><sensor type='perspective'/><bsdf type='diffuse'>\n<texture "
+            "type='scale' name='reflectance'><float name='scale' value='" +
+            factor + "'/>" + inside + "</texture></bsdf></scene>");
+    };
+    const std::string board = "<texture type='checkerboard'/>";
+    EXPECT_EQ(refusal("2", board), "no error");
+    EXPECT_EQ(refusal("3", board), "scene.xml:2: scale: expected reflectances in [0, 1], got values from 0.6 to 1.2");
+    EXPECT_EQ(refusal("2", "<texture type='bitmap'>" + two + "</texture>").substr(0, 19), "scene.xml:2: scale:");
+    EXPECT_EQ(refusal("4", "<texture type='scale'><float name='scale' value='0.5'/>" + board + "</texture>"),
+              "no error");
+    EXPECT_EQ(refusal("-1", board).substr(0, 19), "scene.xml:2: scale:");
+}
+
+// What other programs add is read past where they add it, and nowhere else.
+TEST_F(TexturesInFiles, AndOtherPluginsHaveNoPropertiesOfOthers) {
+    EXPECT_EQ(message_of("<scene version='3.0.0'><sensor type='perspective'/>\n<bsdf type='diffuse'>"
+                         "<boolean name='srgb' value='true'/></bsdf></scene>")
+                  .substr(0, 57),
+              "scene.xml:2: unknown property \"srgb\" of bsdf \"diffuse\"; k");
+    EXPECT_EQ(message_of("<scene version='3.0.0'><sensor type='perspective'/>\n<shape type='sphere'>"
+                         "<boolean name='sample_visible' value='true'/></shape></scene>")
+                  .substr(0, 62),
+              "scene.xml:2: unknown property \"sample_visible\" of shape \"spher");
+    const auto scene = load_as("3.0.0",
+                               "<shape type='sphere'><boolean name='caustic_caster' value='true'/></shape>"
+                               "<bsdf type='diffuse'><boolean name='use_path_guiding' value='true'/></bsdf>");
+    EXPECT_EQ(scene.notes.size(), 2u);
+}
+
 TEST_F(TexturesInFiles, GiveRoughnessOpacityAndWeight) {
     write_image();
     const std::string map = "<texture type='bitmap' name='NAME'>" + two + "</texture>";

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
+#include "core/error.h"
+#include "image/read_image.h"
 #include "scene/emitter.h"
 #include "tests/scene/described.h"
 #include "tests/scene/scene_folder.h"
@@ -87,6 +91,22 @@ TEST(Spots, SendPhotonsAsTheyShine) {
     EXPECT_NEAR(inner * scale, expected, 4.5 * scale * std::sqrt(squares));
 }
 
+// A texture is a factor on light: it may be above 1, but not below 0, and it must be finite.
+TEST(Spots, AreRefusedWithATextureThatIsNoLight) {
+    const auto textured = [](float value) {
+        SpotDescription description = spot(30.0, 20.0);
+        ColorImage image{2, 2, std::vector<Color>(4, Color(0.5f))};
+        image.pixels[3] = Color(0.5f, value, 0.5f);
+        description.texture = std::make_shared<const Texture>(
+            Bitmap{.image = std::make_shared<const ColorImage>(image), .file = "a.exr"});
+        return description;
+    };
+    EXPECT_GT(scene_of(textured(1.0f)).emitters.at(0).power.x, 0.0);
+    EXPECT_GT(scene_of(textured(7.0f)).emitters.at(0).power.y, 0.0);
+    for (const float value : {-1.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()})
+        EXPECT_THROW(scene_of(textured(value)), InputError) << value;
+}
+
 class SpotsInFiles : public SceneFolderTest {};
 
 TEST_F(SpotsInFiles, ShineAlongZAndHaveMitsubasDefaults) {
@@ -101,6 +121,26 @@ TEST_F(SpotsInFiles, ShineAlongZAndHaveMitsubasDefaults) {
     const auto& plain = std::get<SpotDescription>(scene.lights.at(1));
     EXPECT_NEAR(plain.cutoff_angle, 20.0 * pi / 180.0, 1e-12);
     EXPECT_NEAR(plain.beam_angle, 15.0 * pi / 180.0, 1e-12);
+}
+
+TEST_F(SpotsInFiles, HaveTexturesOfLight) {
+    const auto refusal = [&](const std::string& inside) {
+        write("scene.xml",
+              "<scene version='0.6.0'><sensor type='perspective'/><shape type='rectangle'/>\n<emitter type='spot'>"
+              "<texture name='texture' type='scale'>" +
+                  inside + "</texture></emitter></scene>");
+        try {
+            build_scene(load_scene_file(folder_ / "scene.xml"));
+        } catch (const InputError& error) {
+            return std::string(error.what()).substr(folder_.string().size() + 1);
+        }
+        return std::string("no error");
+    };
+    EXPECT_EQ(refusal("<spectrum name='value' value='3'/>"), "no error");
+    EXPECT_EQ(refusal("<spectrum name='value' value='-1'/>"),
+              "scene.xml:2: texture: expected finite values of at least 0, got -1");
+    EXPECT_EQ(refusal("<float name='scale' value='1e30'/><spectrum name='value' value='1e30'/>").substr(0, 12),
+              "scene.xml:2:");
 }
 
 }  // namespace

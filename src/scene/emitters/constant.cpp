@@ -7,6 +7,7 @@ namespace photonlab {
 
 ConstantDescription Constant::read(LightReader& reader) {
     reader.require_no_objects();
+    reader.pass_over({"to_world"}, "it is the same from everywhere");
     return {.radiance = reader.light("radiance", ColorD(1.0)), .place = reader.element.place};
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "scene/emitters/light_reader.h"
+#include "scene/textures/image_file.h"
 
 namespace photonlab {
 
@@ -82,10 +83,9 @@ ColorD EnvironmentImage::radiance(const VectorD& local) const {
 double EnvironmentImage::density(const VectorD& local) const {
     const auto width = static_cast<std::size_t>(image_.width);
     const Cell cell = cell_at(local);
-    const std::size_t column = std::min(cell.column, width - 1);
     const double of_row = row_cdf_[cell.row] - (cell.row > 0 ? row_cdf_[cell.row - 1] : 0.0);
     const double* cdf = &column_cdf_[cell.row * width];
-    const double of_column = cdf[column] - (column > 0 ? cdf[column - 1] : 0.0);
+    const double of_column = cdf[cell.column] - (cell.column > 0 ? cdf[cell.column - 1] : 0.0);
     return of_row * of_column / solid_angle(cell.row);
 }
 
@@ -121,35 +121,23 @@ VectorD EnvironmentImage::sample(const Imath::V2f& u) const {
 EnvironmentMapDescription EnvironmentMap::read(LightReader& reader) {
     reader.require_no_objects();
     const std::filesystem::path file = reader.require_file();
-    const std::string& place = reader.properties.place_of("filename");
-    if (reader.is_version_06()) {
-        const double gamma = reader.properties.number("gamma").value_or(0.0);
-        if (gamma != 0.0 && gamma != 1.0)
-            throw InputError(reader.properties.place_of("gamma"),
-                             fmt::format("gamma: expected 1, or none for that of the file, got {}", gamma));
-    }
+    const Decoding decoding = reader.is_version_06() ? read_gamma(reader) : Decoding{};
     const double scale = reader.properties.number("scale").value_or(1.0);
     if (!(scale >= 0.0))
         throw InputError(reader.properties.place_of("scale"),
                          fmt::format("scale: expected a number of at least 0, got {}", scale));
-    read_part(file, place, reader.source.bytes_read);
-    try {
-        ColorImage image = read_color_image(file, false);
-        reader.source.texture_pixels += image.pixels.size();
-        for (const Color& pixel : image.pixels)
-            if (!is_finite(pixel) || std::min({pixel.x, pixel.y, pixel.z}) < 0.0f)
-                throw InputError(file.string(), fmt::format("expected radiances of at least 0, got {} {} {}", pixel.x,
-                                                            pixel.y, pixel.z));
-        const auto rows =
-            reader.is_version_06() ? EnvironmentImage::Rows::Centred : EnvironmentImage::Rows::FromPoleToPole;
-        return {.image = std::make_shared<const EnvironmentImage>(std::move(image), rows),
-                .scale = scale,
-                .axes = reader.axes(),
-                .place = reader.element.place};
-    } catch (const InputError& error) {
-        const std::string message = error.what();
-        throw InputError(message.starts_with(place) ? message : place + ": " + message);
-    }
+    const TextureAxes axes = reader.axes();
+    ColorImage image = read_scene_image(reader, file, decoding, EnvironmentImage::bytes_to_pixel);
+    for (const Color& pixel : image.pixels)
+        if (!is_finite(pixel) || std::min({pixel.x, pixel.y, pixel.z}) < 0.0f)
+            throw InputError(reader.properties.place_of("filename"),
+                             fmt::format("{}: expected radiances of at least 0, got {} {} {}", file.string(), pixel.x,
+                                         pixel.y, pixel.z));
+    const auto rows = reader.is_version_06() ? EnvironmentImage::Rows::Centred : EnvironmentImage::Rows::FromPoleToPole;
+    return {.image = std::make_shared<const EnvironmentImage>(std::move(image), rows),
+            .scale = scale,
+            .axes = axes,
+            .place = reader.element.place};
 }
 
 void EnvironmentMapDescription::check() const {

@@ -21,6 +21,8 @@ public:
 
     EnvironmentImage(ColorImage image, Rows rows);
 
+    static constexpr std::size_t bytes_to_pixel = sizeof(double);  ///< beside the image, that is kept of each
+
     ColorD radiance(const VectorD& local) const;   ///< of a unit direction
     double density(const VectorD& local) const;    ///< per steradian, with which sample() draws it
     VectorD sample(const Imath::V2f& u) const;     ///< unit

@@ -41,6 +41,18 @@ bool is_environment(const LightDescription& light) {
     return is_environment_of(light, static_cast<const SceneLight*>(nullptr));
 }
 
+void require_one_environment(const std::vector<LightDescription>& lights) {
+    const LightDescription* first = nullptr;
+    for (const LightDescription& light : lights) {
+        if (!is_environment(light)) continue;
+        if (first)
+            throw InputError(
+                place_of(light),
+                fmt::format("expected one light around the scene, got a second; the first is at {}", place_of(*first)));
+        first = &light;
+    }
+}
+
 bool is_environment(const Light& light) {
     return std::visit([]<typename Kind>(const Kind&) { return EnvironmentKind<Kind>; }, light);
 }

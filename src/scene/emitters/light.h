@@ -53,6 +53,9 @@ double sampling_weight_of(const LightDescription& light);
 bool is_environment(const LightDescription& light);
 bool is_environment(const Light& light);
 
+/// Throws InputError at the second light around the scene.
+void require_one_environment(const std::vector<LightDescription>& lights);
+
 /// Scene units; empty when it lies at infinity.
 Bounds bounds_of(const LightDescription& light);
 

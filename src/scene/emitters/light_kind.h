@@ -16,7 +16,8 @@ struct LightReader;
 struct DirectSample {
     Vector position;   ///< on the light, already moved off its surface towards the receiver
     Vector direction;  ///< unit, from the receiver to `position`
-    ColorD radiance;   ///< towards the receiver; of what is met by no ray: intensity / distance^2
+    ColorD radiance;   ///< towards the receiver; of what is met by no ray its irradiance across `direction`: of a point
+                       ///< intensity / distance^2
     double density;    ///< per steradian at the receiver, without the choice of light; 1 for what is met by no ray
     bool is_delta;     ///< no other technique can find it
 };

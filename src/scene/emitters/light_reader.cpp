@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/error.h"
 #include "scene/mitsuba/transform.h"
@@ -19,14 +20,24 @@ ColorD LightReader::light(const std::string& name, const ColorD& missing) {
 
 TextureAxes LightReader::axes() {
     const Matrix to_world = properties.transform("to_world").value_or(Matrix());
-    const TextureAxes axes{transform_direction(to_world, {1, 0, 0}).normalized(),
-                           transform_direction(to_world, {0, 1, 0}).normalized(),
-                           transform_direction(to_world, {0, 0, 1}).normalized()};
+    TextureAxes axes{transform_direction(to_world, {1, 0, 0}), transform_direction(to_world, {0, 1, 0}),
+                     transform_direction(to_world, {0, 0, 1})};
+    const double scale = axes[0].length();
+    constexpr double scale_rounding = 1e-3;  // that of 0.6
+    for (VectorD& axis : axes) {
+        if (!(std::abs(axis.length() / scale - 1.0) < scale_rounding))
+            throw InputError(properties.place_of("to_world"),
+                             "to_world: expected a transform that scales alike along all axes");
+        axis.normalize();
+    }
     constexpr double rounding = 1e-4;  // matrices in files are often written with six digits
-    for (int i = 0; i < 3; ++i)
-        if (std::abs(axes[static_cast<std::size_t>(i)].dot(axes[static_cast<std::size_t>((i + 1) % 3)])) > rounding)
+    for (std::size_t i = 0; i < 3; ++i)
+        if (std::abs(axes[i].dot(axes[(i + 1) % 3])) > rounding)
             throw InputError(properties.place_of("to_world"),
                              "to_world: expected a transform without shear, whose axes stay at right angles");
+    if (std::abs(scale - 1.0) > scale_rounding)
+        source.note(fmt::format("{} \"{}\": the scale of its to_world, {:g}, changes nothing of a light", element.tag,
+                                element.attribute("type"), scale));
     return axes;
 }
 
@@ -44,10 +55,12 @@ namespace {
 
 /// How often a light is chosen, which changes the noise of an image and not what it shows.
 double read_sampling_weight(Plugin& plugin) {
+    constexpr double least = 1e-6, most = 1e6;  // beyond, floats lose the power that a photon then has
     const double weight = plugin.properties.number("sampling_weight").value_or(1.0);
-    if (!(weight > 0.0))
-        throw InputError(plugin.properties.place_of("sampling_weight"),
-                         fmt::format("sampling_weight: expected a number above 0, got {}", weight));
+    if (!(weight >= least && weight <= most))
+        throw InputError(
+            plugin.properties.place_of("sampling_weight"),
+            fmt::format("sampling_weight: expected a number from {:g} to {:g}, got {}", least, most, weight));
     return weight;
 }
 

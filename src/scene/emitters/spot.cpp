@@ -116,6 +116,7 @@ SpotDescription Spot::read(LightReader& reader) {
 void SpotDescription::check() const {
     require_light(intensity, place, "intensity");
     if (!is_finite(position)) throw InputError(place, "position is not finite");
+    if (texture) require_factor_on_light(*texture, place);
     if (!(cutoff_angle > 0.0 && cutoff_angle < pi && beam_angle >= 0.0 && beam_angle <= cutoff_angle))
         throw InputError(place, "expected a cutoff in (0, 180) degrees and a beam that is not wider");
 }

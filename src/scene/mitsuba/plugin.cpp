@@ -24,6 +24,15 @@ void Plugin::require_no_objects() const {
                                                     element.attribute("type"), object->tag));
 }
 
+SceneSource Plugin::source_inside(const XmlElement& object, std::string_view kinds) const {
+    constexpr int most_nested = 16;
+    if (source.depth + 1 > most_nested)
+        throw InputError(object.place, fmt::format("expected at most {} {} inside each other", most_nested, kinds));
+    SceneSource inside = source;
+    ++inside.depth;
+    return inside;
+}
+
 void Plugin::pass_over(const std::vector<std::string>& names, const std::string& why) {
     std::vector<std::string> found;
     for (const std::string& name : names)
@@ -35,26 +44,23 @@ void Plugin::pass_over(const std::vector<std::string>& names, const std::string&
 
 namespace {
 
-/// What other programs that read this format have added, and what tells Mitsuba how to go about its work.
-const std::vector<std::string> harmless_properties{"cache",
-                                                   "caustic",
-                                                   "caustic_caster",
-                                                   "caustic_receiver",
-                                                   "is_caustic",
-                                                   "max_anisotropy",
-                                                   "sample_visible",
-                                                   "use_path_guiding",
-                                                   "mis_compensation",
-                                                   "preserve_colors",
-                                                   "use_shadowing_function",
-                                                   "flip_invalid_normals",
-                                                   "srgb",
-                                                   "accel"};
+/// Of elements, by their tags, what other programs that read this format have added to them, and what tells Mitsuba how
+/// to go about its work.
+const std::map<std::string, std::vector<std::string>> harmless_properties{
+    {"bsdf",
+     {"caustic", "caustic_caster", "caustic_receiver", "flip_invalid_normals", "is_caustic", "sample_visible",
+      "use_path_guiding", "use_shadowing_function"}},
+    {"emitter", {"cache", "caustic", "is_caustic", "mis_compensation", "use_path_guiding"}},
+    {"shape",
+     {"accel", "caustic", "caustic_caster", "caustic_receiver", "is_caustic", "preserve_colors", "srgb",
+      "use_path_guiding"}},
+    {"texture", {"accel", "cache", "max_anisotropy"}}};
 
 }  // namespace
 
 void Plugin::require_all_known() {
-    pass_over(harmless_properties, "it changes how another program renders, and not what");
+    if (const auto names = harmless_properties.find(element.tag); names != harmless_properties.end())
+        pass_over(names->second, "it changes how another program renders, and not what");
     properties.require_all_known();
 }
 

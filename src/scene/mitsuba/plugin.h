@@ -21,10 +21,10 @@ struct SceneSource {
     /// The element itself, or the one that a <ref> names.
     std::function<const XmlElement&(const XmlElement&)> resolve;
     std::string& bytes_read;                       ///< takes the bytes of every file that is read
-    std::size_t& texture_pixels;                   ///< of all textures so far
+    std::size_t& image_pixels;                     ///< of all textures and surroundings so far
     std::function<void(const std::string&)> note;  ///< takes what the user should know, a sentence each
     std::map<std::string, std::shared_ptr<const ColorImage>>& images;  ///< of textures, by file and decoding
-    int depth = 0;                                                     ///< of materials inside each other
+    int depth = 0;                                                     ///< of materials or textures inside each other
 };
 
 struct Plugin {
@@ -42,7 +42,11 @@ struct Plugin {
     /// Refuses what nests in it. Throws InputError.
     void require_no_objects() const;
 
-    /// Reads past properties that change nothing here, and notes the first of them.
+    /// The source for the reader of `object`, which nests in it. Throws InputError where too many are inside each
+    /// other, or one is inside itself; `kinds` are what they are.
+    SceneSource source_inside(const XmlElement& object, std::string_view kinds) const;
+
+    /// Reads past those of the properties `names` that are there, which change nothing here, and notes them.
     void pass_over(const std::vector<std::string>& names, const std::string& why);
 
     /// Refuses properties that nobody asked for, but for those of other programs that are known to change no image,

@@ -8,63 +8,25 @@
 #include "core/text/nearest.h"
 #include "scene/mitsuba/plugin.h"
 #include "scene/mitsuba/transform.h"
+#include "scene/textures/image_file.h"
 #include "scene/textures/uv_transform.h"
 
 namespace photonlab {
 
 namespace {
 
-constexpr std::size_t texture_pixel_limit = std::size_t{1} << 27;  // of a scene: small files can hold very many
-
-/// How the file's numbers become linear: as its kind says; not at all; by sRGB; by a power.
-struct Decoding {
-    enum class By { File, Nothing, Srgb, Power } by = By::File;
-    double power = 1.0;
-};
-
-/// 0.6 has a gamma in place of raw: 0 for what the file says, -1 for sRGB.
+/// 0.6 has a gamma in place of raw.
 Decoding read_decoding(Plugin& plugin) {
-    using By = Decoding::By;
-    if (!plugin.is_version_06()) return {plugin.properties.boolean("raw").value_or(false) ? By::Nothing : By::File};
-    const double gamma = plugin.properties.number("gamma").value_or(0.0);
-    if (gamma == 0.0) return {By::File};
-    if (gamma == 1.0) return {By::Nothing};
-    if (gamma == -1.0) return {By::Srgb};
-    if (!(gamma > 0.0))
-        throw InputError(plugin.properties.place_of("gamma"),
-                         fmt::format("gamma: expected -1 (sRGB), 0 (as the file says) or more, got {}", gamma));
-    return {By::Power, gamma};
-}
-
-/// The image, whose errors are at `place` too.
-ColorImage read_image_at(const std::filesystem::path& file, const Decoding& decoding, const std::string& place) {
-    try {
-        ColorImage image = read_color_image(file, decoding.by != Decoding::By::File);
-        if (decoding.by != Decoding::By::Srgb && decoding.by != Decoding::By::Power) return image;
-        for (Color& pixel : image.pixels)
-            for (int channel = 0; channel < 3; ++channel) {
-                const double value = std::max(0.0f, pixel[channel]);
-                pixel[channel] = static_cast<float>(
-                    decoding.by == Decoding::By::Srgb ? srgb_to_linear(value) : std::pow(value, decoding.power));
-            }
-        return image;
-    } catch (const InputError& error) {
-        throw InputError(place, error.what());
-    }
+    if (plugin.is_version_06()) return read_gamma(plugin);
+    return {plugin.properties.boolean("raw").value_or(false) ? Decoding::By::Nothing : Decoding::By::File};
 }
 
 /// One image a file and decoding, however many textures look it up.
 std::shared_ptr<const ColorImage> shared_image(Plugin& plugin, const std::filesystem::path& file,
                                                const Decoding& decoding) {
-    const std::string& place = plugin.properties.place_of("filename");
     const std::string key = fmt::format("{}|{}|{}", file.string(), static_cast<int>(decoding.by), decoding.power);
     std::shared_ptr<const ColorImage>& image = plugin.source.images[key];
-    if (image) return image;
-    read_part(file, place, plugin.source.bytes_read);
-    image = std::make_shared<const ColorImage>(read_image_at(file, decoding, place));
-    plugin.source.texture_pixels += image->pixels.size();
-    if (plugin.source.texture_pixels > texture_pixel_limit)
-        throw InputError(place, fmt::format("expected textures of at most {} pixels in all", texture_pixel_limit));
+    if (!image) image = std::make_shared<const ColorImage>(read_scene_image(plugin, file, decoding));
     return image;
 }
 

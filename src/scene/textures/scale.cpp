@@ -28,19 +28,19 @@ Scale Scale::read(Plugin& plugin) {
         throw InputError(plugin.element.place, "scale: expected one texture, or one colour called value");
     if (objects.empty()) return scale;
     const XmlElement& inner = plugin.source.resolve(*objects.front());
-    if (inner.tag != "texture" || &inner == &plugin.element)
+    if (inner.tag != "texture")
         throw InputError(objects.front()->place, fmt::format("scale: expected a texture, got <{}>", inner.tag));
+    const SceneSource inside = plugin.source_inside(*objects.front(), "textures");
     scale.nested =
-        std::make_shared<const NestedTexture>(NestedTexture{read_texture(inner, plugin.source, TextureUse::Number)});
+        std::make_shared<const NestedTexture>(NestedTexture{read_texture(inner, inside, TextureUse::Number)});
     return scale;
 }
 
-/// The largest value is not known of every texture, so a factor above 1 is checked with that texture's own limit.
 void Scale::check(const std::string& place) const {
-    if (nested) require_reflectance(nested->texture, place);
-    if (!is_finite(factor) || std::min({factor.x, factor.y, factor.z}) < 0.0f || max_channel(factor) > 1.0f)
-        throw InputError(place, fmt::format("scale: expected a factor in [0, 1] on a reflectance, got {} {} {}",
-                                            factor.x, factor.y, factor.z));
+    const TextureRange range = range_of(*this);
+    if (!(range.least >= 0.0f && range.most <= 1.0f))
+        throw InputError(place, fmt::format("scale: expected reflectances in [0, 1], got values from {} to {}",
+                                            range.least, range.most));
 }
 
 }  // namespace photonlab

@@ -1,4 +1,4 @@
-// Another texture, or one colour, times a factor: only 0.6 has it.
+// Another texture, or one colour, times a factor.
 
 #pragma once
 

@@ -1,5 +1,11 @@
 #include "scene/textures/texture.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
 #include "scene/mitsuba/plugin.h"
 
 namespace photonlab {
@@ -18,7 +24,51 @@ std::vector<NamedKind<Plugin, Texture>> kinds_of(const std::variant<Kinds...>*) 
     return {{Kinds::name, read_kind<Kinds>}...};
 }
 
+void include(TextureRange& range, const Color& color) {
+    for (int channel = 0; channel < 3; ++channel) {
+        range.least = std::min(range.least, color[channel]);
+        range.most = std::max(range.most, color[channel]);
+    }
+    if (!is_finite(color)) range = {std::nanf(""), std::nanf("")};  // which no comparison changes any more
+}
+
+constexpr TextureRange nothing{infinity, -infinity};
+
+TextureRange range_of_kind(const Bitmap& bitmap) {
+    TextureRange range = nothing;
+    for (const Color& pixel : bitmap.image->pixels) include(range, pixel);
+    for (const TextureWrap wrap : {bitmap.wrap_u, bitmap.wrap_v}) {
+        if (wrap == TextureWrap::Zero) include(range, Color(0.0f));
+        if (wrap == TextureWrap::One) include(range, Color(1.0f));
+    }
+    return range;
+}
+
+TextureRange range_of_kind(const Checkerboard& board) {
+    TextureRange range = nothing;
+    include(range, board.first);
+    include(range, board.second);
+    return range;
+}
+
+TextureRange range_of_kind(const Scale& scale) {
+    const TextureRange inside = scale.nested ? range_of(scale.nested->texture) : TextureRange{1.0f, 1.0f};
+    TextureRange range = nothing;
+    for (const float value : {inside.least, inside.most}) include(range, scale.factor * value);
+    return range;
+}
+
 }  // namespace
+
+TextureRange range_of(const Texture& texture) {
+    return std::visit([](const auto& kind) { return range_of_kind(kind); }, texture);
+}
+
+void require_factor_on_light(const Texture& texture, const std::string& place) {
+    const TextureRange range = range_of(texture);
+    if (!(range.least >= 0.0f))
+        throw InputError(place, fmt::format("texture: expected finite values of at least 0, got {}", range.least));
+}
 
 void require_reflectance(const Texture& texture, const std::string& place) {
     std::visit([&](const auto& kind) { kind.check(place); }, texture);

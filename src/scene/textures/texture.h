@@ -33,6 +33,16 @@ T luminance(const Imath::Color3<T>& color) {
     return T(0.212671) * color.x + T(0.715160) * color.y + T(0.072169) * color.z;
 }
 
+/// Between which values all channels are, everywhere. Where one is not finite, `least` and `most` are not a number.
+struct TextureRange {
+    float least;
+    float most;
+};
+TextureRange range_of(const Texture& texture);
+
+/// Throws InputError for what is no factor on light: finite, and at least 0.
+void require_factor_on_light(const Texture& texture, const std::string& place);
+
 /// Throws InputError for what is no reflectance.
 void require_reflectance(const Texture& texture, const std::string& place);
 
