@@ -15,6 +15,7 @@
 #include "core/text/messages.h"
 #include "experiment/experiment_file.h"
 #include "integrators/density_estimate.h"
+#include "integrators/registry.h"
 #include "render/estimates/memory.h"
 #include "scene/loader.h"
 #include "scene/narrow_gaps.h"
@@ -159,6 +160,8 @@ void info(const InfoOptions& options) {
     print_output("photons     {} bytes each, one kind\n", sizeof(Photon));
     for (const std::string& what : what_is_left_out(scene, hit_points)) print_output("left out    {}\n", what);
     for (const std::string& note : scene.notes) print_output("note        {}\n", note);
+    if (const auto note = note_of_raised_radii(MethodSettings{}, scene, hit_points))
+        print_output("note        {}\n", *note);
     print_narrow_gaps(scene);
     print_hidden_lights(scene);
     for (const std::string& reason : why_images_are_plain(scene, hit_points)) print_output("warning     {}\n", reason);

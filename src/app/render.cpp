@@ -317,6 +317,8 @@ void render(const RenderOptions& options) {
 
     print_summary(finished.state, prepared.settings, scene, hit_points.points.size(), finished.errors);
     for (const std::string& reason : why_images_are_plain(scene, hit_points)) print_output("note        {}\n", reason);
+    if (const auto note = note_of_raised_radii(prepared.settings.method, scene, hit_points))
+        print_output("note        {}\n", *note);
     if (const auto warning = reference ? warning_about(*reference) : std::nullopt)
         print_output("note        {}\n", *warning);
     if (options.stop_at)

@@ -12,6 +12,7 @@
 #include "core/text/progress.h"
 #include "image/exr.h"
 #include "image/png.h"
+#include "integrators/registry.h"
 #include "record/merged_records.h"
 #include "record/recorder.h"
 #include "record/run_record.h"
@@ -145,10 +146,12 @@ void require_snapshots(const OpenRun& run) {
 }
 
 /// How a run that is finished is told of.
-std::string summary_of(const OpenRun& run, const RunState& last) {
+std::string summary_of(const RunGroup& group, const OpenRun& run, const RunState& last) {
     std::string line = fmt::format("finished {} in {}", run.prepared->run->name, describe_duration(last.times.total()));
     if (run.recorder.last_total_errors()) line += ", rmse " + describe_rmse(*run.recorder.last_total_errors());
     if (run.recorder.nonfinite_pixels() > 0) line += ", with non-finite pixels (run.json says where)";
+    if (const auto note = note_of_raised_radii(run.prepared->settings.method, group.scene, group.hit_points))
+        line += "; " + *note;
     return line;
 }
 
@@ -299,7 +302,7 @@ GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options
     for (std::size_t i = 0; i < open.size(); ++i) {
         finish(group, open[i], last[i]);
         outcome.runs.push_back(
-            {open[i].last_shown, open[i].recorder.last_total_errors(), summary_of(open[i], last[i])});
+            {open[i].last_shown, open[i].recorder.last_total_errors(), summary_of(group, open[i], last[i])});
     }
     outcome.is_finished = true;
     return outcome;

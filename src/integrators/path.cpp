@@ -6,6 +6,10 @@
 //
 // [Kajiya 1986, "The Rendering Equation"; Veach & Guibas 1995, "Optimally Combining Sampling Techniques"]
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "core/error.h"
 #include "core/parallel.h"
 #include "integrators/layers.h"
@@ -88,19 +92,19 @@ PathSample trace_path(const Scene& scene, const HitPoint& point, int max_depth, 
     return result;
 }
 
-/// Light of a point that reaches a diffuse surface by a mirror or through glass is found by photons alone: a path from
-/// the camera would have to hit the point.
+/// Light of what has no size that reaches a diffuse surface by a mirror or through glass is found by photons alone: a
+/// path from the camera would have to hit a point, or the one direction.
 void require_findable_light(const Scene& scene, int max_depth) {
-    const bool all_are_met = std::all_of(scene.emitters.begin(), scene.emitters.end(), is_met_by_rays);
-    if (all_are_met || !depth_allows(max_depth, 3)) return;
+    const auto hidden = std::find_if_not(scene.emitters.begin(), scene.emitters.end(), is_met_by_rays);
+    if (hidden == scene.emitters.end() || !depth_allows(max_depth, 3)) return;
     for (const Shape& shape : scene.shapes) {
         const Material& material = scene.materials[shape.material];
         if (may_be_specular(material))
             throw InputError(scene.name,
-                             "cannot be path traced: it has a point light and a " +
-                                 std::string(material_kind(material)) + " (\"" + material.id +
-                                 "\"), and no path from the camera can find a point by a mirror or through "
-                                 "glass, so all its caustics would be missing; use ppm, also for a reference");
+                             fmt::format("cannot be path traced: it has a {} light and a {} (\"{}\"), and no path "
+                                         "from the camera can find light without size by a mirror or through glass, "
+                                         "so all its caustics would be missing; use ppm, also for a reference",
+                                         emitter_kind(*hidden), material_kind(material), material.id));
     }
 }
 

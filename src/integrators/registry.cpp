@@ -75,6 +75,26 @@ void require_resolvable(const MethodSettings& settings, const Scene& scene) {
     }
 }
 
+std::uint64_t count_raised_radii(const MethodSettings& settings, const HitPoints& hit_points) {
+    if (!uses_setting(settings, "footprints")) return 0;
+    return static_cast<std::uint64_t>(
+        std::count_if(hit_points.footprints.begin(), hit_points.footprints.end(), [&](float footprint) {
+            return settings.footprints * static_cast<double>(footprint) < smallest_initial_radius;
+        }));
+}
+
+std::optional<std::string> note_of_raised_radii(const MethodSettings& settings, const Scene& scene,
+                                                const HitPoints& hit_points) {
+    const std::uint64_t raised = count_raised_radii(settings, hit_points);
+    if (raised == 0) return std::nullopt;
+    return fmt::format(
+        "at {} of {} hit points {:g} footprints of the pixel are less than {:g} of the scene, which is {:g} scene "
+        "units "
+        "large, and than its floats resolve: the radius there is {:.3g}",
+        raised, hit_points.footprints.size(), settings.footprints, smallest_initial_radius, scene.unit_length,
+        smallest_initial_radius * scene.unit_length);
+}
+
 std::unique_ptr<Integrator> make_integrator(const IntegratorKind& kind, const MethodSettings& settings,
                                             const IntegratorContext& context) {
     require_all_in_range(settings);

@@ -3,8 +3,10 @@
 
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -50,6 +52,14 @@ void require_valid(const MethodSettings& settings);
 /// Throws InputError when a length is out of what float32 geometry can resolve in the scene: the image would merely be
 /// wrong.
 void require_resolvable(const MethodSettings& settings, const Scene& scene);
+
+/// At how many hit points the radius from `footprints` is smaller than the scene's floats resolve and is raised to what
+/// they do: there the image is coarser than its pixels.
+std::uint64_t count_raised_radii(const MethodSettings& settings, const HitPoints& hit_points);
+
+/// The same as a sentence, where there are any.
+std::optional<std::string> note_of_raised_radii(const MethodSettings& settings, const Scene& scene,
+                                                const HitPoints& hit_points);
 
 /// Checks the settings and makes an integrator of the kind.
 std::unique_ptr<Integrator> make_integrator(const IntegratorKind& kind, const MethodSettings& settings,

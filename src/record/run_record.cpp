@@ -118,6 +118,7 @@ Json run_json(const RunRecord& record, const Recorder& recorder, const RunState&
           {"paths_cut", last.paths_cut},
           {"power_cut", last.power_cut},
           {"camera_weight_cut", hit_points.weight_cut},
+          {"raised_radii", count_raised_radii(method, hit_points)},
           {"nonfinite_camera_paths", hit_points.nonfinite},
           {"nonfinite_photons", last.nonfinite_photons + last.nonfinite_in_maps},
           {"nonfinite_pixels", recorder.nonfinite_pixels()}}},

@@ -50,6 +50,24 @@ TEST(Registry, MakesNothingFromRefusedSettings) {
     EXPECT_THROW(make_integrator(find_integrator_kind("ppm"), {.alpha = 2.0}, {scene, hit_points}), InputError);
 }
 
+// Radii below 1e-7 of the scene are raised to that, which is said.
+TEST(Registry, CountsRadiiThatFloatsDoNotResolve) {
+    const Scene scene = build_scene(room(2, 2));
+    HitPoints hit_points = trace_hit_points(scene, 1, 1);
+    ASSERT_EQ(hit_points.footprints.size(), 4u);
+    EXPECT_EQ(count_raised_radii({}, hit_points), 0u);
+    EXPECT_FALSE(note_of_raised_radii({}, scene, hit_points));
+    hit_points.footprints = {1e-9f, 4.9e-8f, 5.1e-8f, 1e-3f};
+    EXPECT_EQ(count_raised_radii({}, hit_points), 2u);
+    EXPECT_EQ(count_raised_radii({.footprints = 1.0}, hit_points), 3u);
+    EXPECT_EQ(count_raised_radii({.radius = 0.5}, hit_points), 0u);
+    EXPECT_EQ(count_raised_radii({.integrator = "path"}, hit_points), 0u);
+    const auto note = note_of_raised_radii({}, scene, hit_points);
+    ASSERT_TRUE(note);
+    EXPECT_TRUE(note->starts_with("at 2 of 4 hit points 2 footprints of the pixel are less than 1e-07 of the scene"))
+        << *note;
+}
+
 TEST(Registry, KnowsWhichSettingsAMethodUses) {
     const MethodSettings nearest{.integrator = "photonmapper", .mode = GatherMode::Nearest};
     const MethodSettings fixed{.integrator = "photonmapper"};

@@ -131,15 +131,21 @@ TEST_F(ReferenceStore, HalvesOfAnotherReferenceAreRefusedBeforeAnythingIsWritten
 }
 
 TEST_F(ReferenceStore, LightThatNoPathFindsIsRefused) {
-    std::string text = two_walls_scene;
-    text.replace(text.find("</scene>"), 8,
-                 "<emitter type='point'/><shape type='sphere'><bsdf type='dielectric' id='glass'/></shape></scene>");
-    const Scene scene = build_scene(load_scene_file(folder_.write("glass.xml", text)));
+    const auto lit_by = [&](const std::string& kind) {
+        std::string text = two_walls_scene;
+        text.replace(
+            text.find("</scene>"), 8,
+            "<emitter type='" + kind + "'/><shape type='sphere'><bsdf type='dielectric' id='glass'/></shape></scene>");
+        return build_scene(load_scene_file(folder_.write("glass.xml", text)));
+    };
     ReferenceSettings by_path = settings(1);
-    EXPECT_NE(message_of([&] {
-                  add_reference_samples(scene, by_path, folder_ / "reference");
-              }).find("cannot be path traced: it has a point light and a dielectric (\"glass\")"),
-              std::string::npos);
+    for (const std::string kind : {"spot", "directional", "point"})
+        EXPECT_NE(message_of([&] {
+                      add_reference_samples(lit_by(kind), by_path, folder_ / "reference");
+                  }).find("cannot be path traced: it has a " + kind + " light and a dielectric (\"glass\")"),
+                  std::string::npos)
+            << kind;
+    const Scene scene = lit_by("point");
     EXPECT_FALSE(std::filesystem::exists(folder_ / "reference/half_a.exr"));
     by_path.max_depth = 2;  // no path of two edges meets a caustic
     EXPECT_EQ(add_reference_samples(scene, by_path, folder_ / "shallow").at("estimate"), "unbiased");
