@@ -8,6 +8,8 @@
 #include "core/error.h"
 #include "image/read_image.h"
 #include "scene/emitter.h"
+#include "scene/emitters/light_reader.h"
+#include "scene/mitsuba/xml_reader.h"
 #include "tests/scene/described.h"
 #include "tests/scene/scene_folder.h"
 #include "tests/support/chi_square.h"
@@ -317,6 +319,30 @@ TEST_F(SurroundingsInFiles, AreOnceInAFile) {
     const std::string map = "<emitter type='envmap'><string name='filename' value='two.hdr'/></emitter>\n";
     EXPECT_EQ(message_of("<scene version='3.0.0'><sensor type='perspective'/>\n" + map + map + map + "</scene>"),
               "scene.xml:3: expected one light around the scene, got a second; the first is at scene.xml:2");
+}
+
+// A scene's images have at most 2^27 pixels in all; this one has 8.
+TEST_F(SurroundingsInFiles, CountAsTexturesDo) {
+    write("scene.xml",
+          "<scene version='3.0.0'>\n<emitter type='envmap'><string name='filename' value='two.hdr'/>"
+          "</emitter></scene>");
+    std::string bytes_read;
+    const XmlElement scene = read_scene_xml(folder_ / "scene.xml", {}, bytes_read);
+    std::map<std::string, std::shared_ptr<const ColorImage>> images;
+    for (const std::size_t room : {8u, 7u}) {
+        std::size_t pixels = (std::size_t{1} << 27) - room;
+        const SceneSource source{.resolve = [](const XmlElement& element) -> const XmlElement& { return element; },
+                                 .bytes_read = bytes_read,
+                                 .image_pixels = pixels,
+                                 .note = [](const std::string&) {},
+                                 .images = images};
+        if (room == 8) {
+            EXPECT_NO_THROW(read_scene_light(scene.children.at(0), source));
+            EXPECT_EQ(pixels, std::size_t{1} << 27);
+        } else {
+            EXPECT_THROW(read_scene_light(scene.children.at(0), source), InputError);
+        }
+    }
 }
 
 TEST_F(SurroundingsInFiles, AreRefusedWithThePlaceOfWhatIsWrong) {

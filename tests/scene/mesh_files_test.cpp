@@ -358,26 +358,33 @@ TEST_F(MeshesInScenes, SerializedThatBeginBeyondTheirFileAreRefused) {
     }
 }
 
-// Memory is asked for before it is taken, so that what does not fit is refused and not killed: files whose vertices
-// take a hundred times their bytes.
+// Memory is asked for before it is taken, so that what does not fit is refused and not killed: of files whose vertices
+// take many times their bytes.
 TEST_F(MeshesInScenes, ThatNeedMoreMemoryThanThereIsAreRefused) {
-    constexpr std::uint64_t vertices = 8'000'000;  // 192 MB of positions
-    std::string body = bytes_of<std::uint32_t>(0x1000u) + '\0' + bytes_of(vertices) + bytes_of<std::uint64_t>(0);
-    body.resize(body.size() + 12 * vertices, '\0');
-    write("a.serialized", bytes_of<std::uint16_t>(0x041C) + bytes_of<std::uint16_t>(4) + deflated(body));
-    body.clear();
-    body.shrink_to_fit();
-    const auto read_with_little_memory = [&] {
+    constexpr std::uint64_t vertices = 8'000'000;  // 183 MiB of positions
+    {
+        std::string body = bytes_of<std::uint32_t>(0x1000u) + '\0' + bytes_of(vertices) + bytes_of<std::uint64_t>(0);
+        body.resize(body.size() + 12 * vertices, '\0');
+        write("a.serialized", bytes_of<std::uint16_t>(0x041C) + bytes_of<std::uint16_t>(4) + deflated(body));
+        write("a.ply",
+              "ply\nformat binary_little_endian 1.0\nelement vertex 8000000\nproperty uchar x\nproperty uchar "
+              "y\nproperty uchar z\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n" +
+                  std::string(3 * vertices, '\1'));
+    }
+    const auto read_with = [&](std::uint64_t mebibytes, const std::string& file) {
         std::ifstream pages("/proc/self/statm");
         std::uint64_t size = 0;
         pages >> size;
-        const rlim_t bytes = size * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) + (150u << 20);
+        const rlim_t bytes = size * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) + (mebibytes << 20);
         const rlimit limit{bytes, bytes};
         ::setrlimit(RLIMIT_AS, &limit);
-        std::fputs(message_of_shape("a.serialized", "").c_str(), stderr);
+        std::fputs(message_of_shape(file, "").c_str(), stderr);
         std::_Exit(0);
     };
-    EXPECT_EXIT(read_with_little_memory(), ::testing::ExitedWithCode(0), "needs 183 MiB of memory");
+    for (const std::string file : {"a.serialized", "a.ply"})
+        EXPECT_EXIT(read_with(150, file), ::testing::ExitedWithCode(0), "^" + file + ": needs 183 MiB of memory");
+    EXPECT_EXIT(read_with(400, "a.serialized"), ::testing::ExitedWithCode(0), "^scene.xml:1: needs 366 MiB of memory")
+        << "for the normals that it does not have";
 }
 
 // ---------------------------------------------------------------------------------------------------------------------

@@ -52,8 +52,7 @@ const std::map<std::string, std::vector<std::string>> harmless_properties{
       "use_path_guiding", "use_shadowing_function"}},
     {"emitter", {"cache", "caustic", "is_caustic", "mis_compensation", "use_path_guiding"}},
     {"shape",
-     {"accel", "caustic", "caustic_caster", "caustic_receiver", "is_caustic", "preserve_colors", "srgb",
-      "use_path_guiding"}},
+     {"caustic", "caustic_caster", "caustic_receiver", "is_caustic", "preserve_colors", "srgb", "use_path_guiding"}},
     {"texture", {"accel", "cache", "max_anisotropy"}}};
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/machine/available_memory.h"
+
 namespace photonlab {
 
 void fill_in_normals(MeshDescription& mesh) {
@@ -69,9 +71,20 @@ void turn_to_normals(MeshDescription& mesh) {
     }
 }
 
+/// Asks for what is made up of a mesh, which can be several times what its file holds.
+void require_memory_for_placing(const MeshDescription& mesh, const ShapeReader& reader, const MeshPlacing& placing) {
+    std::uint64_t bytes = 0;
+    if (!placing.face_normals) bytes += mesh.positions.size() * sizeof(VectorD) * (mesh.normals.empty() ? 2 : 1);
+    if (reader.has_texture && mesh.texture_coordinates.empty())
+        bytes += mesh.positions.size() * sizeof(Imath::V2d) +
+                 3 * mesh.triangles.size() * (2 * sizeof(VectorD) + sizeof(Imath::V2d));
+    require_memory_for(reader.element.place, bytes);
+}
+
 }  // namespace
 
 MeshDescription place_mesh(MeshDescription mesh, const ShapeReader& reader, const MeshPlacing& placing) {
+    require_memory_for_placing(mesh, reader, placing);
     const Matrix& to_world = reader.to_world;
     for (VectorD& position : mesh.positions) position = transform_point(to_world, position);
     for (VectorD& normal : mesh.normals)
