@@ -208,7 +208,8 @@ Names known_in(const std::string& message) {
 TEST_F(Stated, PluginsAreThoseThatScenesMayHave) {
     std::map<std::string, Names> stated;  // what is quoted before the first semicolon
     for (const Row& row : table(manual_, "kind")) {
-        const std::vector<std::string> names = quoted(split(row.at(1), ";").at(0));
+        const std::string first = split(row.at(1), ";").at(0);
+        const std::vector<std::string> names = quoted(first);
         stated[row.at(0)] = Names(names.begin(), names.end());
     }
     const auto known = [&](const std::string& element) {
