@@ -36,20 +36,9 @@ void Plugin::pass_over(const std::vector<std::string>& names, const std::string&
 namespace {
 
 /// What other programs that read this format have added, and what tells Mitsuba how to go about its work.
-const std::vector<std::string> harmless_properties{"cache",
-                                                   "caustic",
-                                                   "caustic_caster",
-                                                   "caustic_receiver",
-                                                   "is_caustic",
-                                                   "max_anisotropy",
-                                                   "sample_visible",
-                                                   "use_path_guiding",
-                                                   "mis_compensation",
-                                                   "preserve_colors",
-                                                   "use_shadowing_function",
-                                                   "flip_invalid_normals",
-                                                   "srgb",
-                                                   "accel"};
+const std::vector<std::string> harmless_properties{
+    "cache",          "caustic",          "caustic_caster",   "caustic_receiver", "is_caustic", "max_anisotropy",
+    "sample_visible", "use_path_guiding", "mis_compensation", "preserve_colors",  "srgb",       "accel"};
 
 }  // namespace
 
