@@ -77,7 +77,7 @@ private:
     }
 
     void add(const Hit& hit, const Line& line) {
-        const std::optional<Surface> surface = orient(scene_, hit, frame_.normal);
+        const std::optional<Surface> surface = orient_to_gather(scene_, hit, frame_.normal);
         if (!surface || !is_scattering(surface->bsdf)) return;
         // The photon that could lie there, kept as photons are.
         const Photon photon{.position = hit.position,
