@@ -60,6 +60,7 @@ void print_materials(const Scene& scene) {
 /// What methods do where light meets a material.
 std::string treatment_of(const Material& material) {
     const bool branches = may_be_specular(material);
+    if (!branches && !may_scatter(material)) return "black: paths end there";
     if (!may_scatter(material)) return "followed into every single direction; nothing is gathered there";
     const char* gathered = may_scatter_through(material) ? "gathered at, from both sides" : "gathered at";
     return branches ? fmt::format("{}, and followed into every single direction", gathered) : gathered;
@@ -70,7 +71,7 @@ void print_treatments(const Scene& scene) {
     std::map<std::string, std::size_t> shapes;
     for (const Shape& shape : scene.shapes) {
         const Material& material = scene.materials[shape.material];
-        ++shapes[is_black(material.bsdf) && !material.back ? "black: paths end there" : treatment_of(material)];
+        ++shapes[treatment_of(material)];
     }
     print_output("methods     of {} shapes\n", scene.shapes.size());
     for (const auto& [treatment, count] : shapes) print_output("            {} {}\n", count, treatment);

@@ -8,6 +8,19 @@
 
 namespace photonlab {
 
+/// One of two things, and the number that is left to draw from it: uniform in [0, 1) again.
+struct ShareChoice {
+    bool is_chosen;  ///< the one that has the share; else the other
+    float rest;
+};
+
+/// `share` in [0, 1].
+inline ShareChoice choose_by_share(float u, float share) {
+    constexpr float below_one = 0x1.fffffep-1f;
+    if (u < share) return {true, std::min(u / share, below_one)};
+    return {false, std::min((u - share) / (1.0f - share), below_one)};
+}
+
 /// Unit disc, uniform in area: density 1/pi. Concentric, so neighbouring u stay neighbours.
 /// [Shirley & Chiu 1997, "A Low Distortion Map Between Disk and Square"]
 inline Imath::V2f sample_unit_disc(const Imath::V2f& u) {

@@ -77,7 +77,7 @@ private:
     }
 
     void add(const Hit& hit, const Line& line) {
-        const std::optional<Surface> surface = orient(scene_, hit, frame_.normal);
+        const std::optional<Surface> surface = orient_to_gather(scene_, hit, frame_.normal);
         if (!surface || !is_scattering(surface->bsdf)) return;
         // The photon that could lie there, kept as photons are.
         const Photon photon{.position = hit.position,
@@ -85,7 +85,7 @@ private:
                             .incoming = PackedDirection(frame_.normal),
                             .normal = CoarseDirection(surface->frame.normal),
                             .edges = 1};
-        if (!PhotonSide(photon).is_accepted_at(point_.normal)) return;
+        if (!PhotonSide(photon).is_accepted_at({point_.position, point_.normal, top_})) return;
         double height = (VectorD(hit.position) - VectorD(point_.position)).dot(VectorD(frame_.normal));
         if (std::abs(height) < flat_height) height = 0.0;
         const double cosine = surface->geometric_normal.dot(frame_.normal);

@@ -29,11 +29,16 @@ class FluxSum {
 public:
     FluxSum(const Scene& scene, const HitPoint& point, int max_depth)
         : camera_edges_(point.camera_edges), max_depth_(max_depth) {
-        const Bsdf bsdf = bsdf_at(scene.materials[point.material], point.texture_coordinate, point.from_back);
-        if (const std::optional<Color> uniform = uniform_value(bsdf))
+        const Material& material = scene.materials[point.material];
+        const bool is_turned = has_turned_normals(material);
+        const Bsdf bsdf = bsdf_at(material, point.texture_coordinate, point.from_back);
+        const std::optional<Color> uniform = uniform_value(bsdf);
+        if (uniform && !is_turned) {
             uniform_ = *uniform;
-        else
-            glossy_.emplace(Glossy{bsdf, make_frame(point.normal), make_frame(point.normal).to_local(point.outgoing)});
+        } else {
+            const Frame frame = make_frame(point.normal);
+            glossy_.emplace(Glossy{bsdf, frame, frame.to_local(point.outgoing), point.geometric_normal, is_turned});
+        }
     }
 
     /// False for a photon whose path would be deeper than max_depth: it is not counted.
@@ -44,8 +49,12 @@ public:
     /// Flux times BRDF of a photon that was accepted at the point, but for factor().
     ColorD carried(const Photon& photon) const {
         if (!glossy_) return ColorD(photon.power);
-        const Vector incoming = glossy_->frame.to_local(photon.incoming.unit());
-        return ColorD(evaluate(glossy_->bsdf, glossy_->outgoing, incoming) * photon.power);
+        const Vector direction = photon.incoming.unit();
+        const Vector incoming = glossy_->frame.to_local(direction);
+        const Color reflected = evaluate(glossy_->bsdf, glossy_->outgoing, incoming) * photon.power;
+        if (!glossy_->is_turned) return ColorD(reflected);
+        // The power is that by the geometric normal's cosine, and nothing comes where the two disagree.
+        return ColorD(reflected) * std::max(0.0f, incoming.z / direction.dot(glossy_->geometric_normal));
     }
 
     /// The BRDF where it is a constant; else 1.
@@ -71,6 +80,8 @@ private:
         Bsdf bsdf;
         Frame frame;
         Vector outgoing;  // local
+        Vector geometric_normal;
+        bool is_turned;  // by a texture, the frame
     };
 
     ColorD sum_ = ColorD(0.0);  // of flux times BRDF; of flux alone where the BRDF is a constant
@@ -83,10 +94,16 @@ private:
 
 /// What a hit point asks the map for within `radius` (unit box).
 inline GatherQuery query_at(const Scene& scene, const HitPoint& point, double radius) {
-    GatherQuery query{point.position, point.normal, radius};
-    if (may_scatter_through(scene.materials[point.material]))
-        query.beyond = point.from_back ? Beyond::Front : Beyond::Back;
+    const Material& material = scene.materials[point.material];
+    GatherQuery query{point.position, gather_normal(material, point.normal, point.geometric_normal), radius};
+    if (may_scatter_through(material)) query.beyond = point.from_back ? Beyond::Front : Beyond::Back;
     return query;
+}
+
+/// The point with the normal of the plane in which photons lie around it.
+inline HitPoint in_plane_of_photons(const Scene& scene, HitPoint point) {
+    point.normal = gather_normal(scene.materials[point.material], point.normal, point.geometric_normal);
+    return point;
 }
 
 /// What one gather finds at one hit point.
@@ -96,7 +113,7 @@ struct PointGather {
     [[no_unique_address]] Moments moments;
 
     PointGather(const Scene& scene, const HitPoint& point, int max_depth, const GatherReach& reach)
-        : sum(scene, point, max_depth), moments(point, reach) {}
+        : sum(scene, point, max_depth), moments(in_plane_of_photons(scene, point), reach) {}
 
     /// Takes a photon that the map found around the point; the density estimate is that within `squared_radius`.
     void add(const Scene& scene, const Photon& photon, double squared_distance, double squared_radius,
@@ -163,7 +180,9 @@ inline GatherAreaSettings gather_area_settings(const MethodSettings& settings) {
 }
 
 inline SurfaceEnd surface_end(const Scene& scene, const HitPoint& point) {
-    return {point.position, point.normal, point.geometric_normal, may_scatter_through(scene.materials[point.material])};
+    const Material& material = scene.materials[point.material];
+    return {point.position, gather_normal(material, point.normal, point.geometric_normal), point.geometric_normal,
+            may_scatter_through(material)};
 }
 
 /// Radii that can be asked for, in shares of the scene (unit box). Float positions near its walls are 3e-8 apart: a

@@ -72,7 +72,7 @@ inline double nearest_squared_radius(const PhotonMap& map, const HitPoint& point
     const double pixel = static_cast<double>(context.scene.bounding_radius) /
                          std::min(context.hit_points.width, context.hit_points.height);
     const NearestPhotons nearest =
-        map.nearest(point.position, point.normal, static_cast<std::size_t>(settings.test_photons), 100.0 * pixel,
+        map.nearest(query_at(context.scene, point, 100.0 * pixel), static_cast<std::size_t>(settings.test_photons),
                     [](const Photon&, double, double) {});
     return nearest.squared_radius * just_inside * just_inside;
 }

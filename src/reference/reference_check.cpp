@@ -184,7 +184,7 @@ public:
             std::vector<PointSums> found;
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 const HitPoint point = hit_points_.points[first + i * stride_];
-                queries.push_back({point.position, point.normal, radii_[first + i * stride_]});
+                queries.push_back(query_at(scene_, point, radii_[first + i * stride_]));
                 found.emplace_back(FluxSum(scene_, point, max_depth_));
             }
             map.within_each(queries, [&](std::size_t place, const Photon& photon, double squared_distance) {

@@ -143,7 +143,8 @@ private:
                 .bytes_read = bytes_read_,
                 .image_pixels = image_pixels_,
                 .note = [this](const std::string& sentence) { note(sentence); },
-                .images = images_};
+                .images = images_,
+                .rough_coats = rough_coats_};
     }
 
     // -----------------------------------------------------------------------------------------------------------------
@@ -414,6 +415,7 @@ private:
     double far_clip_ = 1e4;
     std::size_t image_pixels_ = 0;
     std::map<std::string, std::shared_ptr<const ColorImage>> images_;
+    std::map<std::array<double, 3>, std::shared_ptr<const RoughCoat>> rough_coats_;
     std::map<std::string, const XmlElement*> by_id_;
     std::map<const XmlElement*, std::size_t> materials_;
     std::optional<std::size_t> default_material_;

@@ -271,11 +271,18 @@ namespace {
 
 /// Heights are lengths, so they are taken to the unit box as positions are.
 void scale_heights(Material& material, double unit_length) {
-    if (material.normals) material.normals->scale /= unit_length;
-    if (!material.back || !material.back->normals) return;
-    Material back = *material.back;
-    scale_heights(back, unit_length);
-    material.back = std::make_shared<const Material>(std::move(back));
+    for (auto* normals : {&material.normals, &material.normals_behind})
+        if (*normals) (*normals)->scale /= unit_length;
+}
+
+}  // namespace
+
+namespace {
+
+/// The opposite of a normal that is mirrored in the surface: what leans to the left from the front still does from
+/// behind.
+Vector mirrored_opposite(const Vector& turned, const Vector& normal) {
+    return normal * (2.0f * turned.dot(normal)) - turned;
 }
 
 }  // namespace
@@ -298,8 +305,27 @@ Vector turned_normal(const Shape& shape, const Hit& hit, const NormalTexture& no
                  normal * (2.0 * color.z - 1.0);
     }
     if (!is_finite(turned) || turned.length2() == 0.0) return hit.shading_normal;
-    const Vector unit(turned.normalized());
-    return unit.dot(hit.geometric_normal) < 0.0f ? -unit : unit;
+    Vector unit(turned.normalized());
+    if (unit.dot(hit.geometric_normal) < 0.0f) unit = -unit;
+    return normals.is_mirrored ? mirrored_opposite(unit, hit.shading_normal) : unit;
+}
+
+std::optional<Surface> passed_straight(const Scene& scene, const Hit& hit, const Vector& outgoing) {
+    const std::uint32_t material = scene.shapes[hit.shape].material;
+    const float geometric = hit.geometric_normal.dot(outgoing);
+    if (geometric == 0.0f || !is_transmissive(scene.materials[material].bsdf)) return std::nullopt;
+    const bool from_back = geometric < 0.0f;
+    const Color through = straight_through(bsdf_at(scene.materials[material], hit.texture_coordinate, from_back));
+    if (is_black(through)) return std::nullopt;
+    const Vector normal = from_back ? -hit.geometric_normal : hit.geometric_normal;
+    // A pane that reflects nothing.
+    return Surface{.bsdf = ThinDielectric{.index_outside = 1.0f, .index_inside = 1.0f, .transmittance = through},
+                   .material = material,
+                   .texture_coordinate = hit.texture_coordinate,
+                   .frame = make_frame(normal),
+                   .geometric_normal = normal,
+                   .position = hit.position,
+                   .from_back = from_back};
 }
 
 Ray Camera::ray(double x, double y, const Imath::V2f& on_lens) const {

@@ -105,23 +105,24 @@ struct Surface {
     bool from_back;  ///< `outgoing` is on the shape's inside
 };
 
-/// The shading normal at a hit, as the material's texture turns it: unit, on the side of the geometric normal.
+/// The shading normal at a hit, as the material's texture turns it: unit, on the side of the geometric normal where it
+/// is not mirrored.
 Vector turned_normal(const Shape& shape, const Hit& hit, const NormalTexture& normals);
 
-/// Turns the hit to the side of `outgoing` (unit, away from the surface). Empty when nothing can be reflected there:
-/// the back of a one-sided opaque material, a black material, or a direction on whose side shading and geometric normal
-/// disagree.
-inline std::optional<Surface> orient(const Scene& scene, const Hit& hit, const Vector& outgoing) {
+/// What orient() gives where shading and geometric normal disagree about the side of `outgoing`: light goes straight on
+/// there as through a hole, where the material has any, and else nowhere.
+std::optional<Surface> passed_straight(const Scene& scene, const Hit& hit, const Vector& outgoing);
+
+/// orient() with that shading normal.
+inline std::optional<Surface> orient_by(const Scene& scene, const Hit& hit, const Vector& outgoing,
+                                        const Vector& shading_normal) {
     const std::uint32_t material_index = scene.shapes[hit.shape].material;
     const Material& material = scene.materials[material_index];
     const float geometric = hit.geometric_normal.dot(outgoing);
     const bool from_back = geometric < 0.0f;
-    const std::optional<NormalTexture>& normals =
-        from_back && material.back ? material.back->normals : material.normals;
-    const Vector shading_normal = normals ? turned_normal(scene.shapes[hit.shape], hit, *normals) : hit.shading_normal;
     const float shading = shading_normal.dot(outgoing);
-    if (!(geometric * shading > 0.0f)) return std::nullopt;
-    if (from_back && !material.two_sided && !is_transmissive(material.bsdf)) return std::nullopt;
+    if (!(geometric * shading > 0.0f)) return passed_straight(scene, hit, outgoing);
+    if (from_back && !material.two_sided && !is_seen_from_behind(material)) return std::nullopt;
     const Bsdf bsdf = bsdf_at(material, hit.texture_coordinate, from_back);
     if (is_black(bsdf)) return std::nullopt;
     const float side = from_back ? -1.0f : 1.0f;
@@ -132,6 +133,30 @@ inline std::optional<Surface> orient(const Scene& scene, const Hit& hit, const V
                    .geometric_normal = hit.geometric_normal * side,
                    .position = hit.position,
                    .from_back = from_back};
+}
+
+/// Turns the hit to the side of `outgoing` (unit, away from the surface). Empty when nothing can be reflected there:
+/// the back of a one-sided opaque material, a black material, or a direction on whose side shading and geometric normal
+/// disagree, unless the material has holes.
+inline std::optional<Surface> orient(const Scene& scene, const Hit& hit, const Vector& outgoing) {
+    const Material& material = scene.materials[scene.shapes[hit.shape].material];
+    const bool from_back = hit.geometric_normal.dot(outgoing) < 0.0f;
+    const std::optional<NormalTexture>& normals = from_back ? material.normals_behind : material.normals;
+    if (!normals) return orient_by(scene, hit, outgoing, hit.shading_normal);
+    return orient_by(scene, hit, outgoing, turned_normal(scene.shapes[hit.shape], hit, *normals));
+}
+
+/// The normal by which photons are kept and accepted, and by whose cosine their power is kept: the shading normal, but
+/// the geometric one where a texture turns normals. These may change within any gather radius, and what a photon brings
+/// is up to that of the point that gathers.
+inline const Vector& gather_normal(const Material& material, const Vector& shading, const Vector& geometric) {
+    return has_turned_normals(material) ? geometric : shading;
+}
+
+/// orient() as photons are kept: with gather_normal().
+inline std::optional<Surface> orient_to_gather(const Scene& scene, const Hit& hit, const Vector& outgoing) {
+    const Material& material = scene.materials[scene.shapes[hit.shape].material];
+    return orient_by(scene, hit, outgoing, gather_normal(material, hit.shading_normal, hit.geometric_normal));
 }
 
 /// True when both normals see `direction` on the same side; a path must not continue in any other direction.

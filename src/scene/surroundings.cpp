@@ -93,23 +93,25 @@ private:
         is_flat_ = false;
         if constexpr (KnowsItsWhole<Kind>) {
             const std::optional<Vector> normal = kind.whole_within(point_.position, radius_);
-            if (!normal || !takes_photons_everywhere(material) || !is_on_side(*normal, material)) return;
+            if (!normal || !takes_photons_everywhere(*normal, material) || !is_on_side(*normal, material)) return;
             is_flat_ = is_analytic_ = true;
             area_ += pi * radius_ * radius_;
         }
     }
 
-    /// Anything of it scatters light, whatever the place.
-    static bool takes_photons_everywhere(const Material& material) {
-        return material.textures.empty() && is_scattering(material.bsdf) && !is_black(material.bsdf);
+    /// It scatters light on the point's side, whatever the place.
+    bool takes_photons_everywhere(const Vector& normal, const Material& material) const {
+        if (needs_texture_coordinates(material)) return false;
+        const Bsdf bsdf = bsdf_at(material, Imath::V2f(0.0f), normal.dot(point_.normal) < 0.0f);
+        return is_scattering(bsdf) && !is_black(bsdf);
     }
     bool is_on_side(const Vector& normal, const Material& material) const {
-        return material.two_sided || is_transmissive(material.bsdf) || normal.dot(point_.normal) > 0.0f;
+        return normal.dot(point_.normal) > 0.0f || is_seen_from_behind(material);
     }
 
     Acceptance acceptance_on(const TriangleMesh& mesh, const Imath::Vec3<std::uint32_t>& triangle, const Vector& normal,
                              const Material& material) const {
-        if (!is_on_side(normal, material) || !is_scattering(material.bsdf)) return Acceptance::Nowhere;
+        if (!is_on_side(normal, material) || !may_scatter(material)) return Acceptance::Nowhere;
         float least = std::abs(normal.dot(point_.normal));
         float most = least;
         if (!mesh.normals.empty())
@@ -119,9 +121,8 @@ private:
                 most = std::max(most, cosine);
             }
         if (most < surely_disagree && mesh.normals.empty()) return Acceptance::Nowhere;
-        if (material.textures.empty() && is_black(material.bsdf)) return Acceptance::Nowhere;
-        return least > surely_agree && takes_photons_everywhere(material) ? Acceptance::Everywhere
-                                                                          : Acceptance::Unknown;
+        return least > surely_agree && takes_photons_everywhere(normal, material) ? Acceptance::Everywhere
+                                                                                  : Acceptance::Unknown;
     }
 
     VectorD from_point(const Vector& position) const { return VectorD(position) - VectorD(point_.position); }

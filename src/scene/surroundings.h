@@ -15,7 +15,7 @@ namespace photonlab {
 /// A point of a surface, seen from one side.
 struct SurfaceEnd {
     Vector position;
-    Vector normal;                ///< shading normal, unit, on that side
+    Vector normal;                ///< gather_normal(), unit, on that side
     Vector geometric_normal;      ///< unit, on that side
     bool has_other_side = false;  ///< light is gathered from behind it as well
 };

@@ -24,6 +24,34 @@ float adjoint_correction(const Surface& surface, const Vector& arriving, const V
            std::abs(arriving.dot(geometric) * leaving.dot(shading));
 }
 
+/// What arrives at a surface.
+struct Arrival {
+    const Vector& from;  ///< unit
+    const Color& power;
+    std::uint32_t edges;
+    bool only_specular;
+};
+
+/// Leaves a photon on a surface that spreads light.
+void store(const std::optional<Surface>& surface, const Arrival& arrival, PhotonPass& result) {
+    if (!surface || !is_scattering(surface->bsdf)) return;
+    const Vector& normal = surface->frame.normal;
+    const Vector& geometric = surface->geometric_normal;
+    const Color carried = normal == geometric
+                              ? arrival.power
+                              : arrival.power * std::abs(arrival.from.dot(normal) / arrival.from.dot(geometric));
+    if (is_finite(surface->position) && is_finite(arrival.from) && is_finite(carried))
+        result.photons.push_back({.position = surface->position,
+                                  .power = carried,
+                                  .incoming = PackedDirection(arrival.from),
+                                  .normal = CoarseDirection(normal),
+                                  .edges = static_cast<std::uint16_t>(arrival.edges & 0x3fffu),
+                                  .from_back = surface->from_back,
+                                  .caustic = arrival.only_specular && arrival.edges > 1});
+    else
+        ++result.nonfinite;
+}
+
 void trace_path(const Scene& scene, const PhotonSettings& settings, RandomStream random, PhotonPass& result) {
     const std::uint32_t emitter = choose_emitter(scene, random.next_double());
     const Imath::V2f u_position = random.next_2d();
@@ -42,24 +70,14 @@ void trace_path(const Scene& scene, const PhotonSettings& settings, RandomStream
         if (!hit) return;
         const Vector arriving = -ray.direction;
         const std::optional<Surface> surface = orient(scene, *hit, arriving);
-        if (!surface) return;
-
-        if (is_scattering(surface->bsdf) && (edges > 1 || settings.store_direct)) {
-            const Vector& normal = surface->frame.normal;
-            const Vector& geometric = surface->geometric_normal;
-            const Color carried =
-                normal == geometric ? power : power * std::abs(arriving.dot(normal) / arriving.dot(geometric));
-            if (is_finite(surface->position) && is_finite(arriving) && is_finite(carried))
-                result.photons.push_back({.position = surface->position,
-                                          .power = carried,
-                                          .incoming = PackedDirection(arriving),
-                                          .normal = CoarseDirection(normal),
-                                          .edges = static_cast<std::uint16_t>(edges & 0x3fffu),
-                                          .from_back = surface->from_back,
-                                          .caustic = only_specular && edges > 1});
+        if (edges > 1 || settings.store_direct) {
+            // Where a texture turns the normal, the path may end though a point nearby can gather the photon.
+            if (has_turned_normals(scene.materials[scene.shapes[hit->shape].material]))
+                store(orient_to_gather(scene, *hit, arriving), {arriving, power, edges, only_specular}, result);
             else
-                ++result.nonfinite;
+                store(surface, {arriving, power, edges, only_specular}, result);
         }
+        if (!surface) return;
         if (edges == edge_limit) break;
 
         const std::optional<BsdfSample> bounce =

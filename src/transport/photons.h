@@ -22,9 +22,10 @@ namespace photonlab {
 struct Photon {
     Vector position;
     Color power;  ///< flux that one emitted path carries here, relative to Scene::total_power; not divided by the
-                  ///< number of paths; times |incoming.normal| / |incoming.geometric normal| (Veach 1996)
+                  ///< number of paths; times |incoming.normal| / |incoming.geometric normal| (Veach 1996), with the
+                  ///< normal below
     PackedDirection incoming;  ///< towards where the photon came from
-    CoarseDirection normal;    ///< shading normal on the side on which the photon arrived
+    CoarseDirection normal;    ///< gather_normal() on the side on which the photon arrived
     std::uint16_t edges : 14;  ///< edges of the path from the light to here; 1 when it came straight from the light
     std::uint16_t from_back : 1 = 0;  ///< 1: it arrived on the inside of the shape
     std::uint16_t caustic : 1 = 0;    ///< 1: it came from the light by specular surfaces alone, and by at least one

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "integrators/density_estimate.h"
+#include "integrators/progressive.h"
 #include "tests/statistical/rendering.h"
 #include "tests/statistical/scenes.h"
 
@@ -182,6 +183,27 @@ TEST(InitialRadius, IsThreeFootprintsUnlessGivenInSceneUnits) {
         EXPECT_NEAR(*report_of({.integrator = integrator, .radius = 0.07}).radius_max, 0.07, 1e-9) << integrator;
     }
     EXPECT_FALSE(report_of({.integrator = "path"}).radius_mean);
+}
+
+// Rough glass gathers from both of its sides, and so begins with a disc that holds as many photons of both.
+TEST(ProgressivePhotonMapping, BeginsWithWhatIsNearestOnEitherSideOfRoughGlass) {
+    SceneDescription description = floor_seen_at_origin(Color(0.5f));
+    description.materials[0].bsdf = RoughDielectric{};
+    const Scene scene = build_scene(description);
+    const HitPoints hit_points = trace_hit_points(scene, 1, 1);
+    ASSERT_EQ(hit_points.points.size(), 1u);
+    const HitPoint point = hit_points.points[0];
+    const float distance = 0.001f;
+    const Photon beyond{.position = point.position + Vector(distance, 0.0f, 0.0f),
+                        .power = Color(1.0f),
+                        .incoming = PackedDirection(-point.normal),
+                        .normal = CoarseDirection(-point.normal),
+                        .edges = 1,
+                        .from_back = true};
+    const MethodSettings settings{.test_photons = 1};
+    const double squared =
+        nearest_squared_radius(PhotonMap({beyond}), point, settings, {.scene = scene, .hit_points = hit_points});
+    EXPECT_NEAR(std::sqrt(squared), distance, 1e-6);
 }
 
 }  // namespace

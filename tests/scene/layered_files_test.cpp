@@ -98,9 +98,92 @@ TEST_F(LayeredFiles, MixTheirPartsByTheirWeights) {
     };
     near(f("0.2, 0.3, 0.1"), {0.2f, 0.3f, 0.1f});
     near(f("1 2 1"), {0.25f, 0.5f, 0.25f});
-    near(f("0 0 0"), {0.0f, 0.0f, 0.0f});
+    EXPECT_EQ(
+        refusal_of("0.6.0", "<bsdf type='mixturebsdf'><string name='weights' value='0 0 0'/>" + parts + "</bsdf>"),
+        "scene.xml:2: mixturebsdf: expected weights that add up to more than 0, got \"0 0 0\"");
     EXPECT_EQ(refusal_of("0.6.0", "<bsdf type='mixturebsdf'><string name='weights' value='1'/>" + parts + "</bsdf>"),
               "scene.xml:2: mixturebsdf: expected 1 nested bsdf, got 3");
+}
+
+TEST_F(LayeredFiles, AreNotScaledWhereTheyForbidIt) {
+    const auto refusal = [&](const std::string& kind, const std::string& inside, const std::string& value) {
+        return refusal_of("0.6.0", "<bsdf type='" + kind + "'><boolean name='ensureEnergyConservation' value='" +
+                                       value + "'/>" + inside + "</bsdf>");
+    };
+    const std::string bright = "<rgb name='reflectance' value='1.2 0.5 0.5'/>";
+    EXPECT_EQ(refusal("diffuse", bright, "true"), "no error");
+    EXPECT_EQ(refusal("diffuse", "<rgb name='reflectance' value='0.5'/>", "false"), "no error");
+    EXPECT_NE(refusal("diffuse", bright, "false").find("reflectance is 1.2, and ensureEnergyConservation is false"),
+              std::string::npos);
+    EXPECT_NE(refusal("mixturebsdf", "<string name='weights' value='1 1'/><bsdf type='diffuse'/><bsdf type='diffuse'/>",
+                      "false")
+                  .find("the sum of the weights is 2"),
+              std::string::npos);
+}
+
+// 0.6 scales both by 0.99 over the largest sum of their largest values, image or not: the image is 0 and 1.
+TEST_F(LayeredFiles, OfPhongAreScaledByTheSumOfTheirLargestValues) {
+    write_bytes(folder_ / "two.png", 2, 1, {0, 0, 0, 255, 255, 255});
+    const Phong plain = bsdf<Phong>("0.6.0",
+                                    "<bsdf type='phong'><rgb name='diffuseReflectance' value='1.2'/><rgb "
+                                    "name='specularReflectance' value='0.2'/></bsdf>");
+    EXPECT_NEAR(plain.diffuse_reflectance.x, 1.2 * 0.99 / 1.4, 1e-6);
+    EXPECT_NEAR(plain.specular_reflectance.x, 0.2 * 0.99 / 1.4, 1e-6);
+    const Material textured = material("0.6.0",
+                                       "<bsdf type='phong'><texture name='diffuseReflectance' type='bitmap'><string "
+                                       "name='filename' value='two.png'/></texture><rgb name='specularReflectance' "
+                                       "value='0.2'/></bsdf>");
+    const auto at = [&](float u) { return std::get<Phong>(bsdf_at(textured, {u, 0.5f}, false)); };
+    EXPECT_NEAR(at(0.75f).diffuse_reflectance.x, 0.99 / 1.2, 1e-6);
+    EXPECT_NEAR(at(0.25f).diffuse_reflectance.x, 0.0, 1e-6);
+    EXPECT_NEAR(at(0.25f).specular_reflectance.x, 0.2 * 0.99 / 1.2, 1e-6);
+}
+
+// Both clamp the weight of a blend; 0.6 takes the mean of a texture's channels, 3 their brightness.
+TEST_F(LayeredFiles, OfBlendsHaveTheirWeightsClampedAndAsOneNumber) {
+    const std::string parts = "<bsdf type='diffuse'/><bsdf type='diffuse'/></bsdf>";
+    write_bytes(folder_ / "green.png", 1, 1, {0, 255, 0});
+    for (const std::string version : {"0.6.0", "3.0.0"}) {
+        const auto constant = [&](const std::string& weight) {
+            return bsdf<Blend>(version, "<bsdf type='blendbsdf'><float name='weight' value='" + weight + "'/>" + parts)
+                .weight;
+        };
+        EXPECT_EQ(constant("1.5"), 1.0f);
+        EXPECT_EQ(constant("-0.5"), 0.0f);
+        const Material green = material(version,
+                                        "<bsdf type='blendbsdf'><texture name='weight' type='bitmap'><string "
+                                        "name='filename' value='green.png'/></texture>" +
+                                            parts);
+        EXPECT_NEAR(std::get<Blend>(bsdf_at(green, {0.5f, 0.5f}, false)).weight,
+                    version == "0.6.0" ? 1.0 / 3.0 : 0.71516, 1e-5);
+    }
+}
+
+TEST_F(LayeredFiles, OfManyPartsAreRefusedBeforeTheyAreRead) {
+    std::string inside = "<bsdf type='diffuse' id='m0'/>";
+    for (int level = 1; level <= 16; ++level) {
+        std::string weights, parts;
+        for (int i = 0; i < 10; ++i) {
+            weights += " 0.1";
+            parts += "<ref id='m" + std::to_string(level - 1) + "'/>";
+        }
+        inside += "\n<bsdf type='mixturebsdf' id='m" + std::to_string(level) + "'><string name='weights' value='" +
+                  weights + "'/>" + parts + "</bsdf>";
+    }
+    EXPECT_NE(refusal_of("0.6.0", inside + "<shape type='sphere'><ref id='m16'/></shape>")
+                  .find("expected at most 256 bsdfs inside one"),
+              std::string::npos);
+}
+
+TEST_F(LayeredFiles, ShareTheRoughCoatsThatAreTheSame) {
+    const auto scene =
+        load_as("0.6.0",
+                "<shape type='sphere'><bsdf type='roughplastic'/></shape><shape type='sphere'><bsdf "
+                "type='roughplastic'><rgb name='diffuseReflectance' value='0.1'/></bsdf></shape><shape "
+                "type='sphere'><bsdf type='roughplastic'><float name='alpha' value='0.2'/></bsdf></shape>");
+    const auto coat = [&](std::size_t i) { return std::get<RoughPlastic>(scene.materials.at(i).bsdf).coat; };
+    EXPECT_EQ(coat(0), coat(1));
+    EXPECT_NE(coat(0), coat(2));
 }
 
 TEST_F(LayeredFiles, OfTwoSidesShowEachItsOwn) {
@@ -208,16 +291,34 @@ TEST_F(TexturesInFiles, ShareTheImagesThatTheyLookUp) {
     EXPECT_EQ(image(0), image(1));
 }
 
-// checkerboard.cpp of 3 has color0 where the halves differ, that of 0.6 where they do not.
-TEST_F(TexturesInFiles, HaveEachFamilysCheckerboard) {
+// Both have color0 where the halves are the same. (int)(2 u) of 0.6 is 0 from -1/2 to 1/2.
+TEST_F(TexturesInFiles, OfCheckerboardsBeginWithTheFirstColour) {
     const auto at = [&](const std::string& version, float u, float v) {
         return color_at(texture(version, "<texture type='checkerboard' name='reflectance'/>"), {u, v}).x;
     };
-    EXPECT_EQ(at("0.6.0", 0.25f, 0.25f), 0.4f);
-    EXPECT_EQ(at("0.6.0", 0.75f, 0.25f), 0.2f);
-    EXPECT_EQ(at("3.0.0", 0.25f, 0.25f), 0.2f);
-    EXPECT_EQ(at("3.0.0", 0.75f, 0.25f), 0.4f);
-    EXPECT_EQ(at("3.0.0", 0.75f, -0.75f), 0.4f);
+    for (const std::string version : {"0.6.0", "3.0.0"}) {
+        EXPECT_EQ(at(version, 0.25f, 0.25f), 0.4f);
+        EXPECT_EQ(at(version, 0.75f, 0.25f), 0.2f);
+        EXPECT_EQ(at(version, 0.75f, 0.75f), 0.4f);
+    }
+    EXPECT_EQ(at("3.0.0", 0.25f, -0.25f), 0.2f);
+    EXPECT_EQ(at("0.6.0", 0.25f, -0.25f), 0.4f);
+    EXPECT_EQ(at("0.6.0", 0.25f, -0.75f), 0.2f);
+    EXPECT_EQ(at("0.6.0", 0.25f, -1.25f), 0.4f);
+}
+
+// eval_1() of Mitsuba 3's checkerboard has them the other way around than its eval(); 0.6 has one way alone.
+TEST_F(TexturesInFiles, OfCheckerboardsAreTheOtherWayAroundAsNumbersIn3) {
+    const std::string board =
+        "<texture type='checkerboard' name='weight'><rgb name='color0' value='0.4'/><rgb "
+        "name='color1' value='0.2'/></texture>";
+    const auto weight = [&](const std::string& version) {
+        const Material blend = material(
+            version, "<bsdf type='blendbsdf'>" + board + "<bsdf type='diffuse'/><bsdf type='diffuse'/></bsdf>");
+        return std::get<Blend>(bsdf_at(blend, {0.25f, 0.25f}, false)).weight;
+    };
+    EXPECT_NEAR(weight("0.6.0"), 0.4f, 1e-6f);
+    EXPECT_NEAR(weight("3.0.0"), 0.2f, 1e-6f);
 }
 
 TEST_F(TexturesInFiles, AreScaled) {
@@ -281,6 +382,14 @@ TEST_F(TexturesInFiles, GiveRoughnessOpacityAndWeight) {
         "3.0.0", "<bsdf type='blendbsdf'>" + named("weight") + "<bsdf type='diffuse'/><bsdf type='conductor'/></bsdf>");
     EXPECT_TRUE(is_specular(bsdf_at(blend, {0.75f, 0.5f}, false)));
     EXPECT_FALSE(is_specular(bsdf_at(blend, {0.25f, 0.5f}, false)));
+    const Material phong = material("0.6.0", "<bsdf type='phong'>" + named("exponent") + "</bsdf>");
+    EXPECT_EQ(std::get<Phong>(bsdf_at(phong, {0.75f, 0.5f}, false)).exponent, 1.0f);
+    const Material cloth = material("0.6.0", "<bsdf type='roughdiffuse'>" + named("alpha") + "</bsdf>");
+    EXPECT_EQ(std::get<RoughDiffuse>(bsdf_at(cloth, {0.75f, 0.5f}, false)).alpha, 1.0f);
+    const Material coat = material("0.6.0", "<bsdf type='coating'><float name='thickness' value='0.3'/>" +
+                                                named("sigmaA") + "<bsdf type='diffuse'/></bsdf>");
+    EXPECT_NEAR(std::get<Coating>(bsdf_at(coat, {0.75f, 0.5f}, false)).absorption.x, 0.3f, 1e-6f);
+    EXPECT_EQ(std::get<Coating>(bsdf_at(coat, {0.25f, 0.5f}, false)).absorption.x, 0.0f);
     const Material inside =
         material("3.0.0", "<bsdf type='mask'><bsdf type='diffuse'>" + named("reflectance") + "</bsdf></bsdf>");
     EXPECT_TRUE(needs_texture_coordinates(inside));

@@ -73,5 +73,76 @@ TEST(ShadingNormals, PhotonsAndCameraPathsAgreeAfterReflections) {
     claims.means_agree("photons and paths", photons, paths, 0.015, 0.01);
 }
 
+/// Squares of 0.025 scene units, of a surface whose texture coordinates run over ten, in turn with normals that lean by
+/// `angle` to either side. The origin, at (1/2, 1/2), is in the middle of one.
+NormalTexture leaning_squares(double angle) {
+    const auto color = [](double x, double z) {
+        return Color(Imath::Color3<double>(0.5 + 0.5 * x, 0.5, 0.5 + 0.5 * z));
+    };
+    Checkerboard board{.first = color(std::sin(angle), std::cos(angle)),
+                       .second = color(-std::sin(angle), std::cos(angle))};
+    board.to_uv.setScale(VectorD(200.0, 200.0, 1.0));
+    board.to_uv[3][0] = board.to_uv[3][1] = 0.25;
+    return {std::make_shared<const Texture>(board), false, 1.0};
+}
+
+MeshDescription with_texture_coordinates(MeshDescription mesh) {
+    mesh.texture_coordinates = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    return mesh;
+}
+
+// The same floor, flat, with a texture whose normals lean by 35 degrees to either side within a sixteenth of the radius
+// of each other: photons count by the normal of the point that gathers, and neighbouring squares, 70 degrees apart, do
+// not refuse each other's.
+TEST(ShadingNormals, ThatATextureTurnsWithinTheRadiusAreThoseOfThePoint) {
+    constexpr double height = 2.0;
+    constexpr double radius = 0.4;
+    const double lean = 35.0 * pi / 180.0;
+    SceneDescription description;
+    description.materials = {diffuse(Color(0.6f))};
+    description.materials[0].normals = leaning_squares(lean);
+    description.shapes = {
+        shape(with_texture_coordinates(parallelogram(VectorD(-5, 0, -5), VectorD(0, 0, 10), VectorD(10, 0, 0))), 0)};
+    description.lights = {point_light(VectorD(0.0, height, 0.0), ColorD(1.0))};
+    description.camera = look_at(VectorD(1.0, 2.0, 0.5), VectorD(0.0));
+    const Scene scene = build_scene(description);
+    EXPECT_NEAR(mean_of(render(scene, {.photons_per_pass = 1}, {}).image, direct_layer).x,
+                0.6 / pi * std::cos(lean) / (height * height), 1e-6);
+    std::vector<double> radiance;
+    for (std::uint64_t seed = 1; seed <= 32; ++seed)
+        radiance.push_back(
+            mean_of(render(scene,
+                           {.alpha = 1.0, .radius = radius, .direct = DirectMode::Photons, .photons_per_pass = 60'000},
+                           {.seed = seed})
+                        .image,
+                    gathered_layer)
+                .x);
+    const double q = std::hypot(height, radius);
+    ClaimFamily claims;
+    claims.mean_is("photons", radiance, 0.6 / pi * std::cos(lean) * 2.0 / (q * (q + height)), 0.01);
+}
+
+// The cube of many reflections, with such squares on all of its walls.
+TEST(ShadingNormals, ThatATextureTurnsAreTheSameForPhotonsAndCameraPaths) {
+    SceneDescription description = hollow_cube(Color(0.7f), std::nullopt);
+    for (ShapeDescription& wall : description.shapes)
+        wall.geometry = with_texture_coordinates(std::get<MeshDescription>(wall.geometry));
+    description.materials[0].normals = leaning_squares(35.0 * pi / 180.0);
+    description.lights = {point_light(VectorD(0.3, 0.4, -0.5), ColorD(1.0))};
+    const Scene scene = build_scene(description);
+    std::vector<double> paths;
+    std::vector<double> photons;
+    for (std::uint64_t seed = 1; seed <= 32; ++seed) {
+        paths.push_back(
+            mean_of(render(scene, {.integrator = "path"}, {.passes = 1200, .seed = seed}).image, gathered_layer).x);
+        photons.push_back(
+            mean_of(render(scene, {.radius = 0.1, .photons_per_pass = 20'000}, {.passes = 10, .seed = seed}).image,
+                    gathered_layer)
+                .x);
+    }
+    ClaimFamily claims;
+    claims.means_agree("photons and paths", photons, paths, 0.02, 0.01);
+}
+
 }  // namespace
 }  // namespace photonlab::test

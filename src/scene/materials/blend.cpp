@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/sampling.h"
 #include "scene/materials/material_reader.h"
 
 namespace photonlab {
@@ -22,11 +23,16 @@ Color Blend::evaluate(const Vector& outgoing, const Vector& incoming) const {
     return first.evaluate(outgoing, incoming) * (1.0f - weight) + second.evaluate(outgoing, incoming) * weight;
 }
 
+/// What both bring in the direction over the density of both, which is less noisy than what the drawn one brings. Of
+/// flux that is refracted the drawn one alone knows what it brings: evaluate() is for radiance. (Both are unbiased, and
+/// which is taken depends on the direction alone.)
 std::optional<BsdfSample> Blend::sample(const Vector& outgoing, Carried carried, const Imath::V2f& u) const {
-    const bool is_second = u.x < weight;
-    const float rest = std::min(is_second ? u.x / weight : (u.x - weight) / (1.0f - weight), 0x1.fffffep-1f);
-    auto drawn = (is_second ? second : first).sample(outgoing, carried, {rest, u.y});
-    if (drawn && drawn->density > 0.0f) drawn->density = density(outgoing, drawn->incoming);
+    const ShareChoice second_or_first = choose_by_share(u.x, weight);
+    auto drawn = (second_or_first.is_chosen ? second : first).sample(outgoing, carried, {second_or_first.rest, u.y});
+    if (!drawn || !(drawn->density > 0.0f)) return drawn;
+    drawn->density = density(outgoing, drawn->incoming);
+    if (carried == Carried::Radiance || drawn->incoming.z > 0.0f)
+        drawn->weight = evaluate(outgoing, drawn->incoming) * (std::abs(drawn->incoming.z) / drawn->density);
     return drawn;
 }
 
@@ -40,6 +46,13 @@ bool Blend::has_specular_lobe() const {
 
 bool Blend::has_scattering_lobe() const {
     return (weight < 1.0f && first.has_scattering_lobe()) || (weight > 0.0f && second.has_scattering_lobe());
+}
+
+Color Blend::straight_through() const {
+    Color result(0.0f);
+    if (weight < 1.0f) result += first.straight_through() * (1.0f - weight);
+    if (weight > 0.0f) result += second.straight_through() * weight;
+    return result;
 }
 
 Blend Blend::read(MaterialReader& reader) {

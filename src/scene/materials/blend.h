@@ -24,9 +24,15 @@ struct Blend {
     }
     bool has_specular_lobe() const;
     bool has_scattering_lobe() const;
+    Color straight_through() const;
     bool transmits() const { return first.transmits() || second.transmits(); }
-    bool scatters_through() const { return first.scatters_through() || second.scatters_through(); }
+    bool is_seen_from_behind() const { return first.is_seen_from_behind() || second.is_seen_from_behind(); }
     int most_branches() const { return first.most_branches() + second.most_branches(); }
+    PartMaterials parts(bool textured) const {
+        return {textured || weight < 1.0f ? first.material : nullptr,
+                textured || weight > 0.0f ? second.material : nullptr};
+    }
+    bool adds_single_directions(bool) const { return false; }
 
     static Blend read(MaterialReader& reader);
     void check(const MaterialCheck& check) const;

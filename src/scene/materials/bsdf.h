@@ -24,6 +24,11 @@ struct MaterialReader;
 /// carry flux, which it leaves alone. [Veach 1997, section 5.2]
 enum class Carried { Radiance, Flux };
 
+/// Where a mirror in the surface reflects a direction to.
+inline Vector mirror_direction(const Vector& direction) {
+    return {-direction.x, -direction.y, direction.z};
+}
+
 /// A direction drawn from a BSDF.
 struct BsdfSample {
     Vector incoming;       ///< unit, local frame
@@ -98,18 +103,26 @@ concept Transmissive = requires(const Kind& bsdf) {
     { bsdf.turned_over() } -> std::same_as<Kind>;
 };
 
+/// Materials that another is made of; null where there are fewer.
+using PartMaterials = std::array<const Material*, 2>;
+
 /// A kind that is made of other materials answers some of the above for each of them, and so by itself and not by its
-/// type: which lobes it has, whether light passes through (`transmits`), whether it is spread to the other side as well
-/// (`scatters_through`), and how many branches it has at most. at() is the kind at one point of a surface, seen from
-/// one side: it looks up what it is made of from there on.
+/// type. at() is the kind at one point of a surface, seen from one side: only there it knows which lobes it has, and
+/// how much of the light goes straight on whatever the normal. Everywhere it knows whether light passes through
+/// (`transmits`), whether anything of it can be seen from behind, how many branches it has at most, the materials of
+/// which something may be seen somewhere, and whether it has single directions of its own somewhere besides theirs;
+/// for both of these it is told whether its own colours and numbers are `textured`.
 template <typename Kind>
-concept Composite = requires(const Kind& bsdf, const Imath::V2f& uv) {
+concept Composite = requires(const Kind& bsdf, const Imath::V2f& uv, bool textured) {
     { bsdf.at(uv, true) } -> std::same_as<Kind>;
     { bsdf.has_specular_lobe() } -> std::same_as<bool>;
     { bsdf.has_scattering_lobe() } -> std::same_as<bool>;
+    { bsdf.straight_through() } -> std::same_as<Color>;
     { bsdf.transmits() } -> std::same_as<bool>;
-    { bsdf.scatters_through() } -> std::same_as<bool>;
+    { bsdf.is_seen_from_behind() } -> std::same_as<bool>;
     { bsdf.most_branches() } -> std::same_as<int>;
+    { bsdf.parts(textured) } -> std::same_as<PartMaterials>;
+    { bsdf.adds_single_directions(textured) } -> std::same_as<bool>;
 };
 
 /// Every kind: its name in scene files, its reader, its checks (that it reflects no more than it gets among them), a

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/sampling.h"
 #include "scene/materials/dielectric.h"
 #include "scene/materials/material_reader.h"
 
@@ -38,7 +39,8 @@ Color Coating::let_through(const Refracted& outgoing, const Refracted& incoming)
 
 float Coating::coat_share(const Refracted& outgoing) const {
     const auto coat = static_cast<float>(outgoing.reflected) * max_channel(specular_reflectance);
-    return coat / (coat + static_cast<float>(1.0 - outgoing.reflected));
+    const auto below = static_cast<float>(1.0 - outgoing.reflected);
+    return coat + below > 0.0f ? coat / (coat + below) : 0.0f;
 }
 
 SpecularBranches Coating::branches(const Vector& outgoing, Carried carried) const {
@@ -46,7 +48,7 @@ SpecularBranches Coating::branches(const Vector& outgoing, Carried carried) cons
     if (outgoing.z <= 0.0f) return result;
     const Refracted way_in = refracted(outgoing);
     if (way_in.reflected > 0.0)
-        result.add({-outgoing.x, -outgoing.y, outgoing.z}, specular_reflectance * static_cast<float>(way_in.reflected));
+        result.add(mirror_direction(outgoing), specular_reflectance * static_cast<float>(way_in.reflected));
     if (way_in.reflected >= 1.0) return result;
     for (const SpecularBranch& branch : inner.branches(way_in.direction, carried))
         if (const auto outside = let_out(branch.incoming))
@@ -67,12 +69,12 @@ std::optional<BsdfSample> Coating::sample(const Vector& outgoing, Carried carrie
     if (outgoing.z <= 0.0f) return std::nullopt;
     const Refracted way_in = refracted(outgoing);
     const float share = coat_share(way_in);
-    if (u.x < share)
-        return BsdfSample{{-outgoing.x, -outgoing.y, outgoing.z},
-                          specular_reflectance * (static_cast<float>(way_in.reflected) / share),
-                          0.0f};
-    const float rest = std::min((u.x - share) / (1.0f - share), 0x1.fffffep-1f);
-    const auto below = inner.sample(way_in.direction, carried, {rest, u.y});
+    const ShareChoice coat = choose_by_share(u.x, share);
+    if (coat.is_chosen)
+        return BsdfSample{mirror_direction(outgoing),
+                          specular_reflectance * (static_cast<float>(way_in.reflected) / share), 0.0f};
+    if (way_in.reflected >= 1.0) return std::nullopt;
+    const auto below = inner.sample(way_in.direction, carried, {coat.rest, u.y});
     const auto outside = below ? let_out(below->incoming) : std::nullopt;
     if (!outside) return std::nullopt;
     const Color weight = below->weight * let_through(way_in, refracted(*outside)) / (1.0f - share);
@@ -84,6 +86,7 @@ float Coating::density(const Vector& outgoing, const Vector& incoming) const {
     if (outgoing.z <= 0.0f || incoming.z <= 0.0f) return 0.0f;
     const Refracted way_in = refracted(outgoing);
     const Refracted way_out = refracted(incoming);
+    if (way_in.reflected >= 1.0 || way_out.reflected >= 1.0) return 0.0f;
     const double spread = eta() * eta() * incoming.z / way_out.direction.z;
     return (1.0f - coat_share(way_in)) * inner.density(way_in.direction, way_out.direction) *
            static_cast<float>(spread);
@@ -102,8 +105,18 @@ Coating Coating::read(MaterialReader& reader) {
     coating.specular_reflectance =
         reader.factor_or_texture("specular_reflectance", 1.0, &Coating::specular_reflectance);
     const double thickness = reader.properties.number("thickness").value_or(1.0);
-    const ColorD sigma = reader.properties.index_of_refraction("sigma_a").value_or(ColorD(0.0));
-    coating.absorption = Color(sigma * thickness);
+    if (reader.has("sigma_a") && !reader.properties.has("sigma_a")) {
+        const auto put = [thickness](Bsdf& bsdf, const Color& sigma) {
+            for (int channel = 0; channel < 3; ++channel)
+                std::get<Coating>(bsdf).absorption[channel] =
+                    static_cast<float>(std::max(0.0, sigma[channel] * thickness));
+        };
+        reader.material.textures.push_back({reader.color_or_texture("sigma_a", 0.0).texture, put});
+    } else {
+        // A spectrum of this kind is brought to RGB as an index is, without the white of a light or of a surface.
+        const ColorD sigma = reader.properties.index_of_refraction("sigma_a").value_or(ColorD(0.0));
+        coating.absorption = Color(sigma * thickness);
+    }
     coating.inner.material = &reader.parts(1).front();
     return coating;
 }

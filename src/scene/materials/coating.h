@@ -7,7 +7,8 @@
 namespace photonlab {
 
 /// The material below is met in the refracted directions: f = T(o) T(i) A f'(o', i') / n^2, with A what the coat
-/// absorbs on the way in and out. Light that returns to the base is left out, as in Mitsuba. [Weidlich & Wilkie 2007,
+/// absorbs on the way in and out. Light that returns to the base is left out, and the coat is there from behind too,
+/// as in Mitsuba. [Weidlich & Wilkie 2007,
 /// "Arbitrarily Layered Micro-Facet Surfaces"]
 struct Coating {
     static constexpr const char* name = "coating";
@@ -27,9 +28,12 @@ struct Coating {
     Coating at(const Imath::V2f& uv, bool from_back) const;
     bool has_specular_lobe() const { return true; }
     bool has_scattering_lobe() const { return inner.has_scattering_lobe(); }
+    Color straight_through() const { return Color(0.0f); }
     bool transmits() const { return false; }
-    bool scatters_through() const { return false; }
+    bool is_seen_from_behind() const { return true; }
     int most_branches() const { return 1 + inner.most_branches(); }
+    PartMaterials parts(bool) const { return {inner.material, nullptr}; }
+    bool adds_single_directions(bool) const { return true; }
 
     static Coating read(MaterialReader& reader);
     void check(const MaterialCheck& check) const;

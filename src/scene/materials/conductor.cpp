@@ -16,7 +16,7 @@ SpecularBranches Conductor::branches(const Vector& outgoing, Carried) const {
     Color weight = reflectance;
     for (int channel = 0; channel < 3; ++channel)
         weight[channel] *= static_cast<float>(fresnel_conductor(outgoing.z, eta[channel], k[channel]));
-    result.add({-outgoing.x, -outgoing.y, outgoing.z}, weight);
+    result.add(mirror_direction(outgoing), weight);
     return result;
 }
 

@@ -25,7 +25,7 @@ SpecularBranches Dielectric::branches(const Vector& outgoing, Carried carried) c
     const double eta = static_cast<double>(index_here) / static_cast<double>(index_beyond);
     const FresnelDielectric fresnel = fresnel_dielectric(outgoing.z, eta);
     if (fresnel.reflected > 0.0)
-        result.add({-outgoing.x, -outgoing.y, outgoing.z}, reflectance * static_cast<float>(fresnel.reflected));
+        result.add(mirror_direction(outgoing), reflectance * static_cast<float>(fresnel.reflected));
     if (fresnel.cos_beyond > 0.0) {
         // Radiance over the square of the index is what refraction conserves. [Veach 1997, equation 5.2]
         const double compression = carried == Carried::Radiance ? eta * eta : 1.0;

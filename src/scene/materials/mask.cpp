@@ -1,5 +1,6 @@
 #include "scene/materials/mask.h"
 
+#include "core/sampling.h"
 #include "scene/materials/material_reader.h"
 
 namespace photonlab {
@@ -19,8 +20,9 @@ Color Mask::evaluate(const Vector& outgoing, const Vector& incoming) const {
 
 std::optional<BsdfSample> Mask::sample(const Vector& outgoing, Carried carried, const Imath::V2f& u) const {
     const float share = inner_share();
-    if (u.x >= share) return BsdfSample{-outgoing, (Color(1.0f) - opacity) / (1.0f - share), 0.0f};
-    auto drawn = inner.sample(outgoing, carried, {std::min(u.x / share, 0x1.fffffep-1f), u.y});
+    const ShareChoice inside = choose_by_share(u.x, share);
+    if (!inside.is_chosen) return BsdfSample{-outgoing, (Color(1.0f) - opacity) / (1.0f - share), 0.0f};
+    auto drawn = inner.sample(outgoing, carried, {inside.rest, u.y});
     if (!drawn) return std::nullopt;
     drawn->weight *= opacity / share;
     drawn->density *= share;
@@ -39,15 +41,19 @@ bool Mask::has_scattering_lobe() const {
     return !photonlab::is_black(opacity) && inner.has_scattering_lobe();
 }
 
+Color Mask::straight_through() const {
+    const Color through = Color(1.0f) - opacity;
+    return photonlab::is_black(opacity) ? through : through + opacity * inner.straight_through();
+}
+
+/// In 3 the opacity is one number; in 0.6 a colour.
 Mask Mask::read(MaterialReader& reader) {
-    // In 3 the opacity is one number; in 0.6 a colour.
-    const bool is_number = !reader.is_version_06();
     Mask mask;
-    mask.opacity = reader.factor_or_texture("opacity", 0.5, &Mask::opacity, is_number);
-    if (is_number) mask.opacity = Color(luminance(mask.opacity));
+    mask.opacity = reader.is_version_06() ? reader.factor_or_texture("opacity", 0.5, &Mask::opacity)
+                                          : reader.share_of_color_or_texture("opacity", 0.5, &Mask::opacity);
     mask.inner.material = &reader.parts(1).front();
-    // What it lets through goes straight on, whatever the normal.
     reader.material.normals = mask.inner.material->normals;
+    reader.material.normals_behind = mask.inner.material->normals_behind;
     return mask;
 }
 

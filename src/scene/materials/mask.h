@@ -21,9 +21,14 @@ struct Mask {
     Mask at(const Imath::V2f& uv, bool from_back) const { return {inner.at(uv, from_back), opacity}; }
     bool has_specular_lobe() const;
     bool has_scattering_lobe() const;
+    Color straight_through() const;
     bool transmits() const { return true; }
-    bool scatters_through() const { return inner.scatters_through(); }
+    bool is_seen_from_behind() const { return true; }
     int most_branches() const { return 1 + inner.most_branches(); }
+    PartMaterials parts(bool textured) const {
+        return {textured || !photonlab::is_black(opacity) ? inner.material : nullptr, nullptr};
+    }
+    bool adds_single_directions(bool textured) const { return textured || opacity != Color(1.0f); }
 
     static Mask read(MaterialReader& reader);
     void check(const MaterialCheck& check) const;

@@ -40,10 +40,9 @@ void MaterialCheck::index(float index) const {
 void MaterialCheck::part(const Material* part) const {
     require(part != nullptr, "a nested material");
     require_valid(*part);
-    // Of a mask alone the frame does not matter to what it adds: it takes over what turns the normals.
-    require(!part->normals || std::holds_alternative<Mask>(material.bsdf),
+    // What a mask lets through goes straight on in any frame: it takes over what turns the normals of its part.
+    require(!has_turned_normals(*part) || std::holds_alternative<Mask>(material.bsdf),
             "nested materials whose normals are not turned by a texture");
-    require(!part->back || !part->back->normals, "nested materials whose normals are not turned by a texture");
 }
 
 bool MaterialCheck::keeps(const void* data) const {
@@ -101,26 +100,62 @@ int most_branches(const Bsdf& bsdf) {
 }
 
 Bsdf part_at(const Material& part, const Imath::V2f& texture_coordinate, bool from_back) {
-    if (from_back && !part.two_sided && !is_transmissive(part.bsdf)) return Diffuse{Color(0.0f)};
+    if (from_back && !is_seen_from_behind(part)) return Diffuse{Color(0.0f)};
     return bsdf_at(part, texture_coordinate, from_back);
 }
 
 bool needs_texture_coordinates(const Material& material) {
-    return !material.textures.empty() || material.parts_look_up_textures || material.normals ||
+    return !material.textures.empty() || material.parts_look_up_textures || has_turned_normals(material) ||
            (material.back && needs_texture_coordinates(*material.back));
 }
 
+bool is_seen_from_behind(const Material& material) {
+    if (material.two_sided || is_transmissive(material.bsdf)) return true;
+    return std::visit(
+        []<typename B>(const B& b) {
+            if constexpr (Composite<B>)
+                return b.is_seen_from_behind();
+            else
+                return false;
+        },
+        material.bsdf);
+}
+
 bool may_be_specular(const Material& material) {
-    return is_specular(material.bsdf) || (material.back && may_be_specular(*material.back));
+    const bool in_front = std::visit(
+        [&]<typename B>(const B& b) {
+            if constexpr (Composite<B>)
+                return b.adds_single_directions(!material.textures.empty()) ||
+                       is_true_of_a_part(b, material, may_be_specular);
+            else
+                return Specular<B>;
+        },
+        material.bsdf);
+    return in_front || (material.back && may_be_specular(*material.back));
 }
 
 bool may_scatter(const Material& material) {
-    return is_scattering(material.bsdf) || (material.back && may_scatter(*material.back));
+    const bool in_front = std::visit(
+        [&]<typename B>(const B& b) {
+            if constexpr (Composite<B>)
+                return is_true_of_a_part(b, material, may_scatter);
+            else
+                return Scattering<B> && !(material.textures.empty() && b.is_black());
+        },
+        material.bsdf);
+    return in_front || (material.back && may_scatter(*material.back));
 }
 
 bool may_look_different_from_elsewhere(const Material& material) {
-    return (is_scattering(material.bsdf) && !uniform_value(material.bsdf)) ||
-           (material.back && may_look_different_from_elsewhere(*material.back));
+    const bool in_front = std::visit(
+        [&]<typename B>(const B& b) {
+            if constexpr (Composite<B>)
+                return is_true_of_a_part(b, material, may_scatter);
+            else
+                return Scattering<B> && !Uniform<B>;
+        },
+        material.bsdf);
+    return in_front || (material.back && may_look_different_from_elsewhere(*material.back));
 }
 
 }  // namespace photonlab

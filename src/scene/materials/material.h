@@ -33,8 +33,10 @@ TexturedColor textured(Color Kind::*member, std::shared_ptr<const Texture> textu
 /// surface's texture coordinates.
 struct NormalTexture {
     std::shared_ptr<const Texture> texture;
-    bool is_height = true;  ///< else its colours are normals, as 2 c - 1
-    double scale = 1.0;     ///< of heights: scene units, and in a Scene those of the unit box
+    bool is_height = true;     ///< else its colours are normals, as 2 c - 1
+    double scale = 1.0;        ///< of heights: scene units, and in a Scene those of the unit box
+    bool is_mirrored = false;  ///< the normal from behind is that of the front, mirrored in the surface; else its
+                               ///< opposite
 };
 
 struct Material {
@@ -46,7 +48,8 @@ struct Material {
     std::string place = {};                     ///< "file:line" for messages, or ""
     std::shared_ptr<const Material> back = {};  ///< what is seen from behind, where that is another
     std::optional<NormalTexture> normals = {};  ///< of the front
-    bool parts_look_up_textures = false;        ///< those that it is made of
+    std::optional<NormalTexture> normals_behind = {};
+    bool parts_look_up_textures = false;  ///< those that it is made of
 };
 
 /// Throws InputError for what cannot be rendered.
@@ -159,14 +162,14 @@ inline bool is_transmissive(const Bsdf& bsdf) {
         bsdf);
 }
 
-/// True when light that arrives on the other side is spread to this one, as by rough glass.
-inline bool scatters_through(const Bsdf& bsdf) {
+/// What light that goes straight on, as through a hole, is multiplied by: whatever the normal.
+inline Color straight_through(const Bsdf& bsdf) {
     return visit_bsdf(
         []<typename B>(const B& b) {
             if constexpr (Composite<B>)
-                return b.scatters_through();
+                return b.straight_through();
             else
-                return Scattering<B> && B::is_transmissive;
+                return Color(0.0f);
         },
         bsdf);
 }
@@ -197,14 +200,38 @@ inline Bsdf bsdf_at(const Material& material, const Imath::V2f& texture_coordina
 /// bsdf_at() of what another material is made of: black from behind where it is black there.
 Bsdf part_at(const Material& part, const Imath::V2f& texture_coordinate, bool from_back);
 
-// What a material may do somewhere, on one of its sides.
+// What a material may do somewhere on a surface, seen from either side. It is asked without a place, and true where
+// that depends on a texture.
 
 bool needs_texture_coordinates(const Material& material);
+bool is_seen_from_behind(const Material& material);  ///< else it is black from there
 bool may_be_specular(const Material& material);
 bool may_scatter(const Material& material);
-inline bool may_scatter_through(const Material& material) {
-    return scatters_through(material.bsdf);
-}
 bool may_look_different_from_elsewhere(const Material& material);  ///< its f, where it scatters
+
+/// True where `asked` is of anything that a composite kind may show.
+template <Composite Kind>
+bool is_true_of_a_part(const Kind& kind, const Material& material, bool (*asked)(const Material&)) {
+    for (const Material* part : kind.parts(!material.textures.empty()))
+        if (part && asked(*part)) return true;
+    return false;
+}
+
+/// True when light that arrives on the other side may be spread to this one, as by rough glass.
+inline bool may_scatter_through(const Material& material) {
+    return visit_bsdf(
+        [&]<typename B>(const B& b) {
+            if constexpr (Composite<B>)
+                return is_true_of_a_part(b, material, may_scatter_through);
+            else
+                return Scattering<B> && B::is_transmissive;
+        },
+        material.bsdf);
+}
+
+/// Whether a texture turns its normals.
+inline bool has_turned_normals(const Material& material) {
+    return material.normals || material.normals_behind;
+}
 
 }  // namespace photonlab

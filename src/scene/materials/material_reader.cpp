@@ -12,6 +12,18 @@
 
 namespace photonlab {
 
+MaterialReader::MaterialReader(const XmlElement& plugin, const SceneSource& scene) : Plugin(plugin, scene) {
+    const char* name = "ensure_energy_conservation";
+    if (is_version_06() && properties.has(name)) may_scale_ = properties.boolean(name).value_or(true);
+}
+
+void MaterialReader::require_may_scale(const std::string& place, const std::string& what, double largest) const {
+    if (!may_scale_)
+        throw InputError(place, fmt::format("{} {:g}, and ensureEnergyConservation is false: expected at most 1, or "
+                                            "true, which scales it down",
+                                            what, largest));
+}
+
 /// Where a factor is above 1, Mitsuba 3 refuses it and 0.6 scales it down to 0.99.
 Color MaterialReader::factor(const std::string& name, double missing) {
     ColorD factor = properties.reflectance(name).value_or(ColorD(missing));
@@ -21,11 +33,20 @@ Color MaterialReader::factor(const std::string& name, double missing) {
         throw InputError(properties.place_of(name), fmt::format("{}: expected values in [0, 1], got {} {} {}", name,
                                                                 factor.x, factor.y, factor.z));
     if (is_scaled) {
+        require_may_scale(properties.place_of(name), name + " is", largest);
         source.note(fmt::format("{}: {} of {:.3f} {:.3f} {:.3f} is scaled by {:.4f}, as in Mitsuba 0.6",
                                 properties.place_of(name), name, factor.x, factor.y, factor.z, 0.99 / largest));
         factor *= 0.99 / largest;
     }
     return Color(factor);
+}
+
+ColorOrTexture MaterialReader::color_or_texture(const std::string& name, double missing) {
+    ColorOrTexture result{.color = Color(properties.reflectance(name).value_or(ColorD(missing))),
+                          .texture = find_texture(name, TextureUse::Number)};
+    const Color largest = result.largest();
+    if (result.texture && max_channel(largest) <= 1.0f) require_reflectance(*result.texture, element.place);
+    return result;
 }
 
 float MaterialReader::index(const std::string& name, const std::string& missing) {
@@ -81,16 +102,21 @@ std::shared_ptr<const Texture> MaterialReader::only_texture(TextureUse use) {
 }
 
 const std::vector<Material>& MaterialReader::parts(std::size_t count) {
-    constexpr int most_nested = 16;  // one inside the other
+    constexpr int most_nested = 16;           // one inside the other
+    constexpr std::size_t most_inside = 256;  // in the outermost one, in all
+    std::size_t count_inside = 0;
+    SceneSource inside = source;
+    ++inside.depth;
+    if (!inside.nested_count) inside.nested_count = &count_inside;
     std::vector<Material> parts;
     for (const XmlElement* object : properties.objects()) {
         const XmlElement& plugin = source.resolve(*object);
         if (plugin.tag != "bsdf") continue;
         objects_read_.insert(object);
-        if (source.depth + 1 > most_nested)
+        if (inside.depth > most_nested)
             throw InputError(object->place, fmt::format("expected at most {} bsdfs inside each other", most_nested));
-        SceneSource inside = source;
-        ++inside.depth;
+        if (++*inside.nested_count > most_inside)
+            throw InputError(object->place, fmt::format("expected at most {} bsdfs inside one", most_inside));
         parts.push_back(read_material(plugin, inside));
         parts.back().id = plugin.attribute("id").empty() ? plugin.attribute("type") : plugin.attribute("id");
         parts.back().place = plugin.place;

@@ -11,8 +11,16 @@
 
 namespace photonlab {
 
+/// A colour, or the texture that has it.
+struct ColorOrTexture {
+    Color color;
+    std::shared_ptr<const Texture> texture;  ///< null: `color`
+
+    Color largest() const { return texture ? largest_color(*texture) : color; }
+};
+
 struct MaterialReader : Plugin {
-    MaterialReader(const XmlElement& plugin, const SceneSource& scene) : Plugin(plugin, scene) {}
+    MaterialReader(const XmlElement& plugin, const SceneSource& scene);
 
     Material material;  ///< what read() adds textures and data to
 
@@ -22,38 +30,61 @@ struct MaterialReader : Plugin {
     /// A factor on what a surface reflects or lets through, in [0, 1].
     Color factor(const std::string& name, double missing);
 
-    /// The same, or a texture of that name, which then gives `member`; with `as_number` its brightness alone.
+    /// The same, or a texture of that name, which then gives `member`.
     template <typename Kind>
-    Color factor_or_texture(const std::string& name, double missing, Color Kind::*member, bool as_number = false) {
-        if (auto texture = find_texture(name, TextureUse::Reflectance)) {
+    Color factor_or_texture(const std::string& name, double missing, Color Kind::*member) {
+        if (auto texture = find_texture(name, TextureUse::Reflectance))
             material.textures.push_back(textured(member, std::move(texture)));
-            if (as_number)
-                material.textures.back().put = [member](Bsdf& bsdf, const Color& color) {
-                    std::get<Kind>(bsdf).*member = Color(luminance(color));
-                };
-        }
         return factor(name, missing);
     }
 
-    /// A number in [0, 1], or a texture whose brightness then gives `member`.
+    /// A reflectance as the file has it, which may be above 1 together with others.
+    ColorOrTexture color_or_texture(const std::string& name, double missing);
+
+    /// Throws InputError where the file forbids to scale what reflects more than it gets.
+    void require_may_scale(const std::string& place, const std::string& what, double largest) const;
+
+    /// A number, or a texture that then is `put` into its place as one.
+    template <typename Kind>
+    float mean_or_texture(const std::string& name, float missing, void (*put)(Kind&, float)) {
+        if (auto texture = find_texture(name, TextureUse::Share))
+            material.textures.push_back(
+                {std::move(texture), [put, is_mean = is_version_06()](Bsdf& bsdf, const Color& c) {
+                     put(std::get<Kind>(bsdf), as_number(c, is_mean));
+                 }});
+        return static_cast<float>(properties.number(name).value_or(missing));
+    }
+
+    /// The same, brought into [0, 1].
     template <typename Kind>
     float share_or_texture(const std::string& name, float missing, float Kind::*member) {
-        if (auto texture = find_texture(name, TextureUse::Reflectance))
+        if (auto texture = find_texture(name, TextureUse::Share))
+            material.textures.push_back(
+                {std::move(texture), [member, is_mean = is_version_06()](Bsdf& bsdf, const Color& color) {
+                     std::get<Kind>(bsdf).*member = into_unit_range(as_number(color, is_mean));
+                 }});
+        return into_unit_range(static_cast<float>(properties.number(name).value_or(missing)));
+    }
+
+    /// The same from what may be a colour, of which the brightness counts, into all channels of `member`.
+    template <typename Kind>
+    Color share_of_color_or_texture(const std::string& name, double missing, Color Kind::*member) {
+        if (auto texture = find_texture(name, TextureUse::Share))
             material.textures.push_back({std::move(texture), [member](Bsdf& bsdf, const Color& color) {
-                                             std::get<Kind>(bsdf).*member = luminance(color);
+                                             std::get<Kind>(bsdf).*member = Color(into_unit_range(luminance(color)));
                                          }});
-        return static_cast<float>(properties.number(name).value_or(missing));
+        const ColorD color = properties.reflectance(name).value_or(ColorD(missing));
+        return Color(into_unit_range(static_cast<float>(luminance(color))));
     }
 
     /// How rough a surface is: its distribution, and alpha as a number or, where `member` says whose, a texture.
     template <typename Kind>
     Microfacets facets(Microfacets Kind::*member) {
         if (!member) return read_facets();
-        if (auto texture = find_texture("alpha", TextureUse::Number))
+        if (auto texture = find_texture("alpha", TextureUse::Share))
             material.textures.push_back(
                 {std::move(texture), [member, is_mean = is_version_06()](Bsdf& bsdf, const Color& color) {
-                     const float alpha = is_mean ? (color.x + color.y + color.z) / 3.0f : luminance(color);
-                     (std::get<Kind>(bsdf).*member).alpha = std::max(alpha, smallest_roughness);
+                     (std::get<Kind>(bsdf).*member).alpha = std::max(as_number(color, is_mean), smallest_roughness);
                  }});
         return read_facets();
     }
@@ -78,6 +109,13 @@ private:
     std::shared_ptr<const Texture> find_texture(const std::string& name, TextureUse use);
     Microfacets read_facets();
 
+    /// What a colour is as one number: 0.6 has its mean, 3 its brightness.
+    static float as_number(const Color& color, bool is_mean) {
+        return is_mean ? (color.x + color.y + color.z) / 3.0f : luminance(color);
+    }
+    static float into_unit_range(float x) { return std::min(std::max(x, 0.0f), 1.0f); }  // NaN is 0
+
+    bool may_scale_ = true;  // what reflects more than it gets
     std::set<std::string> textures_asked_;
     std::set<const XmlElement*> objects_read_;
 };

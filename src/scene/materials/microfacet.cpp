@@ -118,6 +118,11 @@ double Microfacets::unhidden(const Vector& direction, const Vector& normal) cons
     return 1.0 / (1.0 + smith_lambda(slopes, alpha, tangent_squared(direction)));
 }
 
+double Microfacets::reflected(const Vector& outgoing, const Vector& incoming, const Vector& normal) const {
+    return distribution(normal) * unhidden(outgoing, normal) * unhidden(incoming, normal) /
+           (4.0 * outgoing.z * incoming.z);
+}
+
 double Microfacets::density(const Vector& direction, const Vector& normal) const {
     if (slopes == FacetSlopes::Phong) return distribution(normal) * normal.z;
     const double seen = unhidden(direction, normal) * std::abs(static_cast<double>(direction.dot(normal)));

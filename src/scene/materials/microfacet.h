@@ -29,6 +29,10 @@ struct Microfacets {
     /// G1: the share of facets with `normal` seen from `direction` that no other hides.
     double unhidden(const Vector& direction, const Vector& normal) const;
 
+    /// D G / (4 cos cos), 1/sr, for directions above the surface and the `normal` half way between: f of facets that
+    /// reflect everything. [Walter et al. 2007, equation 20]
+    double reflected(const Vector& outgoing, const Vector& incoming, const Vector& normal) const;
+
     /// Per steradian, with which sample() draws a normal for `direction`, which is above the surface.
     double density(const Vector& direction, const Vector& normal) const;
 

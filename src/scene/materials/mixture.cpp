@@ -33,7 +33,11 @@ Material Mixture::read(MaterialReader& reader) {
                          fmt::format("mixturebsdf: expected weights of at least 0, got \"{}\"", text));
     std::vector<Material> parts = reader.parts(weights.size());
     double rest = std::accumulate(weights.begin(), weights.end(), 0.0);
+    if (!(rest > 0.0 && std::isfinite(rest)))
+        throw InputError(reader.properties.place_of("weights"),
+                         fmt::format("mixturebsdf: expected weights that add up to more than 0, got \"{}\"", text));
     if (rest > 1.0) {
+        reader.require_may_scale(reader.properties.place_of("weights"), "the sum of the weights is", rest);
         reader.source.note(fmt::format("{}: weights that add up to {:g} are scaled", reader.element.place, rest));
         for (double& weight : weights) weight /= rest;
     }

@@ -8,43 +8,50 @@ namespace photonlab {
 
 namespace {
 
-Bsdf bsdf_of(const Part& part) {
-    return part_at(*part.material, part.texture_coordinate, part.from_back);
+/// Asks its BSDF there, which need not be made where it is the same everywhere.
+template <typename Ask>
+auto ask_bsdf_of(const Part& part, const Ask& ask) {
+    const Material& material = *part.material;
+    if (!part.from_back && material.textures.empty() && !material.parts_look_up_textures) return ask(material.bsdf);
+    return ask(part_at(material, part.texture_coordinate, part.from_back));
 }
 
 }  // namespace
 
 Color Part::evaluate(const Vector& outgoing, const Vector& incoming) const {
-    return photonlab::evaluate(bsdf_of(*this), outgoing, incoming);
+    return ask_bsdf_of(*this, [&](const Bsdf& bsdf) { return photonlab::evaluate(bsdf, outgoing, incoming); });
 }
 
 std::optional<BsdfSample> Part::sample(const Vector& outgoing, Carried carried, const Imath::V2f& u) const {
-    return photonlab::sample(bsdf_of(*this), outgoing, carried, u);
+    return ask_bsdf_of(*this, [&](const Bsdf& bsdf) { return photonlab::sample(bsdf, outgoing, carried, u); });
 }
 
 float Part::density(const Vector& outgoing, const Vector& incoming) const {
-    return photonlab::density(bsdf_of(*this), outgoing, incoming);
+    return ask_bsdf_of(*this, [&](const Bsdf& bsdf) { return photonlab::density(bsdf, outgoing, incoming); });
 }
 
 SpecularBranches Part::branches(const Vector& outgoing, Carried carried) const {
-    return photonlab::specular_branches(bsdf_of(*this), outgoing, carried);
+    return ask_bsdf_of(*this, [&](const Bsdf& bsdf) { return specular_branches(bsdf, outgoing, carried); });
 }
 
 bool Part::has_specular_lobe() const {
-    return is_specular(bsdf_of(*this));
+    return ask_bsdf_of(*this, is_specular);
 }
 
 bool Part::has_scattering_lobe() const {
-    const Bsdf bsdf = bsdf_of(*this);
-    return is_scattering(bsdf) && !is_black(bsdf);
+    return ask_bsdf_of(*this, [](const Bsdf& bsdf) { return is_scattering(bsdf) && !is_black(bsdf); });
+}
+
+Color Part::straight_through() const {
+    return ask_bsdf_of(*this, photonlab::straight_through);
 }
 
 bool Part::transmits() const {
     return is_transmissive(material->bsdf);
 }
 
-bool Part::scatters_through() const {
-    return photonlab::scatters_through(bsdf_of(*this));
+bool Part::is_seen_from_behind() const {
+    return photonlab::is_seen_from_behind(*material);
 }
 
 int Part::most_branches() const {

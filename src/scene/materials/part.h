@@ -21,8 +21,11 @@ struct Part {
     SpecularBranches branches(const Vector& outgoing, Carried carried) const;
     bool has_specular_lobe() const;
     bool has_scattering_lobe() const;
+    Color straight_through() const;
+
+    // What the material is, wherever it is looked at.
     bool transmits() const;
-    bool scatters_through() const;
+    bool is_seen_from_behind() const;
     int most_branches() const;
 };
 

@@ -7,14 +7,6 @@
 
 namespace photonlab {
 
-namespace {
-
-Vector mirror_direction(const Vector& outgoing) {
-    return {-outgoing.x, -outgoing.y, outgoing.z};
-}
-
-}  // namespace
-
 Color Phong::evaluate(const Vector& outgoing, const Vector& incoming) const {
     if (outgoing.z <= 0.0f || incoming.z <= 0.0f) return Color(0.0f);
     const double cosine = std::max(0.0f, mirror_direction(outgoing).dot(incoming));
@@ -24,17 +16,16 @@ Color Phong::evaluate(const Vector& outgoing, const Vector& incoming) const {
 
 float Phong::lobe_share() const {
     const float lobe = max_channel(specular_reflectance);
-    return lobe / (lobe + max_channel(diffuse_reflectance));
+    const float both = lobe + max_channel(diffuse_reflectance);
+    return both > 0.0f ? lobe / both : 0.0f;
 }
 
 std::optional<BsdfSample> Phong::sample(const Vector& outgoing, Carried, const Imath::V2f& u) const {
     if (outgoing.z <= 0.0f) return std::nullopt;
-    const float share = lobe_share();
-    const bool is_lobe = u.x < share;
-    const float rest = std::min(is_lobe ? u.x / share : (u.x - share) / (1.0f - share), 0x1.fffffep-1f);
-    Vector incoming = sample_cosine_hemisphere({rest, u.y});
-    if (is_lobe) {
-        const float cosine = std::pow(1.0f - rest, 1.0f / (exponent + 1.0f));
+    const ShareChoice lobe = choose_by_share(u.x, lobe_share());
+    Vector incoming = sample_cosine_hemisphere({lobe.rest, u.y});
+    if (lobe.is_chosen) {
+        const float cosine = std::pow(1.0f - lobe.rest, 1.0f / (exponent + 1.0f));
         const float sine = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine));
         const float angle = static_cast<float>(2.0 * pi) * u.y;
         incoming = make_frame(mirror_direction(outgoing))
@@ -54,22 +45,38 @@ float Phong::density(const Vector& outgoing, const Vector& incoming) const {
     return share * static_cast<float>(lobe) + (1.0f - share) * cosine_hemisphere_density(incoming.z);
 }
 
-/// 0.6 scales the two down together where their sum is above 1.
+namespace {
+
+/// What gives one of the two colours, times `scale`.
+void put_scaled(MaterialReader& reader, Phong& phong, Color Phong::*member, const ColorOrTexture& source, float scale) {
+    phong.*member = source.color * scale;
+    if (!source.texture) return;
+    reader.material.textures.push_back({source.texture, [member, scale](Bsdf& bsdf, const Color& color) {
+                                            std::get<Phong>(bsdf).*member = color * scale;
+                                        }});
+}
+
+}  // namespace
+
+/// 0.6 scales both down by one factor where the largest values of the two add up to more than 1.
 Phong Phong::read(MaterialReader& reader) {
-    Phong phong{
-        .exponent = static_cast<float>(reader.properties.number("exponent").value_or(30.0)),
-        .diffuse_reflectance = reader.factor_or_texture("diffuse_reflectance", 0.5, &Phong::diffuse_reflectance),
-        .specular_reflectance = reader.factor_or_texture("specular_reflectance", 0.2, &Phong::specular_reflectance)};
-    const float largest = max_channel(phong.diffuse_reflectance + phong.specular_reflectance);
-    if (reader.material.textures.empty() && largest > 1.0f) {
-        const float scale = 0.99f / largest;
+    const ColorOrTexture diffuse = reader.color_or_texture("diffuse_reflectance", 0.5);
+    const ColorOrTexture specular = reader.color_or_texture("specular_reflectance", 0.2);
+    const float largest = max_channel(diffuse.largest() + specular.largest());
+    float scale = 1.0f;
+    if (largest > 1.0f && std::isfinite(largest)) {
+        scale = 0.99f / largest;
+        reader.require_may_scale(reader.element.place, "phong: its reflectances add up to", largest);
         reader.source.note(
             fmt::format("{}: phong: its reflectances add up to {:.3f} and are scaled by {:.4f}, as in "
                         "Mitsuba 0.6",
                         reader.element.place, largest, scale));
-        phong.diffuse_reflectance *= scale;
-        phong.specular_reflectance *= scale;
     }
+    Phong phong;
+    put_scaled(reader, phong, &Phong::diffuse_reflectance, diffuse, scale);
+    put_scaled(reader, phong, &Phong::specular_reflectance, specular, scale);
+    phong.exponent =
+        reader.mean_or_texture<Phong>("exponent", 30.0f, [](Phong& bsdf, float mean) { bsdf.exponent = mean; });
     return phong;
 }
 

@@ -18,8 +18,7 @@ double reflected_at(const Plastic& plastic, double cosine) {
 SpecularBranches Plastic::branches(const Vector& outgoing, Carried) const {
     SpecularBranches result;
     if (outgoing.z <= 0.0f) return result;
-    result.add({-outgoing.x, -outgoing.y, outgoing.z},
-               specular_reflectance * static_cast<float>(reflected_at(*this, outgoing.z)));
+    result.add(mirror_direction(outgoing), specular_reflectance * static_cast<float>(reflected_at(*this, outgoing.z)));
     return result;
 }
 
@@ -27,9 +26,7 @@ Color Plastic::evaluate(const Vector& outgoing, const Vector& incoming) const {
     if (outgoing.z <= 0.0f || incoming.z <= 0.0f) return Color(0.0f);
     const double let_in = (1.0 - reflected_at(*this, outgoing.z)) * (1.0 - reflected_at(*this, incoming.z));
     const double eta = static_cast<double>(index_outside) / index_inside;
-    Color base = diffuse_reflectance;
-    for (int channel = 0; channel < 3; ++channel)
-        base[channel] /= 1.0f - (nonlinear ? base[channel] : 1.0f) * inner_reflectance;
+    const Color base = reflectance_under_coat(diffuse_reflectance, inner_reflectance, nonlinear);
     return base * static_cast<float>(let_in * eta * eta / pi);
 }
 
@@ -43,12 +40,12 @@ float Plastic::coat_share(float cosine) const {
 std::optional<BsdfSample> Plastic::sample(const Vector& outgoing, Carried carried, const Imath::V2f& u) const {
     if (outgoing.z <= 0.0f) return std::nullopt;
     const float share = coat_share(outgoing.z);
-    if (u.x < share) {
+    const ShareChoice coat = choose_by_share(u.x, share);
+    if (coat.is_chosen) {
         const SpecularBranch reflection = *branches(outgoing, carried).begin();
         return BsdfSample{reflection.incoming, reflection.weight / share, 0.0f};
     }
-    const float rest = std::min((u.x - share) / (1.0f - share), 0x1.fffffep-1f);
-    const Vector incoming = sample_cosine_hemisphere({rest, u.y});
+    const Vector incoming = sample_cosine_hemisphere({coat.rest, u.y});
     if (incoming.z <= 0.0f) return std::nullopt;
     const Color f = evaluate(outgoing, incoming);
     return BsdfSample{incoming, f * static_cast<float>(pi) / (1.0f - share),
@@ -58,6 +55,12 @@ std::optional<BsdfSample> Plastic::sample(const Vector& outgoing, Carried carrie
 float Plastic::density(const Vector& outgoing, const Vector& incoming) const {
     if (outgoing.z <= 0.0f) return 0.0f;
     return (1.0f - coat_share(outgoing.z)) * cosine_hemisphere_density(incoming.z);
+}
+
+Color reflectance_under_coat(Color rho, float inner_reflectance, bool nonlinear) {
+    for (int channel = 0; channel < 3; ++channel)
+        rho[channel] /= 1.0f - (nonlinear ? rho[channel] : 1.0f) * inner_reflectance;
+    return rho;
 }
 
 double inner_reflectance_of(double eta) {

@@ -33,6 +33,9 @@ private:
     float coat_share(float cosine) const;  // of sampling, that goes to the coat
 };
 
+/// What leaves a base of reflectance `rho` for light that the coat lets in once, before it lets it out.
+Color reflectance_under_coat(Color rho, float inner_reflectance, bool nonlinear);
+
 /// The share of diffuse light inside a medium of relative index `eta` (its own over the one outside) that its smooth
 /// boundary throws back: 2 times the integral of F(c) c over the cosine c. Exact, as in Mitsuba 0.6.
 double inner_reflectance_of(double eta);

@@ -19,9 +19,7 @@ Color fresnel(const RoughConductor& bsdf, double cosine) {
 Color RoughConductor::evaluate(const Vector& outgoing, const Vector& incoming) const {
     if (outgoing.z <= 0.0f || incoming.z <= 0.0f) return Color(0.0f);
     const Vector normal = (outgoing + incoming).normalized();
-    const double shape = facets.distribution(normal) * facets.unhidden(outgoing, normal) *
-                         facets.unhidden(incoming, normal) / (4.0 * outgoing.z * incoming.z);
-    return fresnel(*this, outgoing.dot(normal)) * static_cast<float>(shape);
+    return fresnel(*this, outgoing.dot(normal)) * static_cast<float>(facets.reflected(outgoing, incoming, normal));
 }
 
 std::optional<BsdfSample> RoughConductor::sample(const Vector& outgoing, Carried, const Imath::V2f& u) const {

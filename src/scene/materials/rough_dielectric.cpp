@@ -1,9 +1,27 @@
 #include "scene/materials/rough_dielectric.h"
 
+#include <bit>
+#include <cstdint>
+
 #include "scene/materials/dielectric.h"
 #include "scene/materials/material_reader.h"
 
 namespace photonlab {
+
+namespace {
+
+/// A third number in [0, 1): the facet takes the two, and which way to go is known only then. Theirs are hashed, all
+/// bits of them, so that it hangs together with neither, however few bits another choice has left of one. [Steele, Lea
+/// & Flood 2014, "Fast Splittable Pseudorandom Number Generators"; its mix is Stafford's thirteenth]
+double third_number(const Imath::V2f& u) {
+    std::uint64_t bits = std::uint64_t{std::bit_cast<std::uint32_t>(u.x)} << 32 | std::bit_cast<std::uint32_t>(u.y);
+    bits = (bits ^ bits >> 30) * 0xbf58476d1ce4e5b9u;
+    bits = (bits ^ bits >> 27) * 0x94d049bb133111ebu;
+    bits ^= bits >> 31;
+    return static_cast<double>(bits >> 11) * 0x1p-53;
+}
+
+}  // namespace
 
 /// The facet that takes one direction to the other.
 struct RoughDielectric::Facet {
@@ -51,16 +69,12 @@ Color RoughDielectric::evaluate(const Vector& outgoing, const Vector& incoming) 
 
 std::optional<BsdfSample> RoughDielectric::sample(const Vector& outgoing, Carried carried, const Imath::V2f& u) const {
     if (outgoing.z <= 0.0f) return std::nullopt;
-    // Which way to go takes a part of one of the numbers, and leaves a number: the facet is drawn first, so the part
-    // must be one that it does not need. A third is made of the low bits of both.
-    const double mixed = static_cast<double>(u.x) * 4096.0 + static_cast<double>(u.y) * 64.0;
-    const double choice = mixed - std::floor(mixed);
     const Vector normal = facets.sample(outgoing, u);
     const double cosine = outgoing.dot(normal);
     if (!(cosine > 0.0)) return std::nullopt;
     const double eta = static_cast<double>(index_here) / index_beyond;
     const FresnelDielectric fresnel = fresnel_dielectric(cosine, eta);
-    const bool reflects = choice < fresnel.reflected;
+    const bool reflects = third_number(u) < fresnel.reflected;
     const VectorD refracted = VectorD(normal) * (eta * cosine - fresnel.cos_beyond) - VectorD(outgoing) * eta;
     const Vector incoming = reflects ? mirrored(outgoing, normal).normalized() : Vector(refracted.normalized());
     if ((incoming.z > 0.0f) != reflects || incoming.z == 0.0f) return std::nullopt;

@@ -8,7 +8,7 @@ namespace photonlab {
 
 Color RoughDiffuse::evaluate(const Vector& outgoing, const Vector& incoming) const {
     if (outgoing.z <= 0.0f || incoming.z <= 0.0f) return Color(0.0f);
-    const double variance = 0.5 * static_cast<double>(alpha) * alpha;  // of slopes
+    const double variance = 0.5 * static_cast<double>(alpha) * alpha;  // of angles
     const double sine_out = std::hypot(outgoing.x, outgoing.y);
     const double sine_in = std::hypot(incoming.x, incoming.y);
     const double across =  // cosine of the angle between the two, seen from above
@@ -51,7 +51,8 @@ RoughDiffuse RoughDiffuse::read(MaterialReader& reader) {
     const bool has_other_name = reader.has("diffuse_reflectance");
     return {.reflectance = reader.factor_or_texture(has_other_name ? "diffuse_reflectance" : "reflectance", 0.5,
                                                     &RoughDiffuse::reflectance),
-            .alpha = static_cast<float>(reader.properties.number("alpha").value_or(0.2)),
+            .alpha = reader.mean_or_texture<RoughDiffuse>("alpha", 0.2f,
+                                                          [](RoughDiffuse& bsdf, float mean) { bsdf.alpha = mean; }),
             .is_qualitative = reader.properties.boolean("use_fast_approx").value_or(false)};
 }
 

@@ -14,7 +14,8 @@ struct RoughDiffuse {
     static constexpr bool is_transmissive = false;
 
     Color reflectance = Color(0.5f);  ///< of a facet, in [0, 1] a channel
-    float alpha = 0.2f;               ///< root mean square slope times sqrt(2), at least 0
+    float alpha = 0.2f;               ///< roughness as Mitsuba's, at least 0: sqrt(2) times the standard deviation of
+                                      ///< the angles, in radians, by which facets are tilted
     bool is_qualitative = false;      ///< without light that is reflected twice
 
     Color evaluate(const Vector& outgoing, const Vector& incoming) const;

@@ -3,6 +3,7 @@
 #include "core/sampling.h"
 #include "scene/materials/dielectric.h"
 #include "scene/materials/material_reader.h"
+#include "scene/materials/plastic.h"
 
 namespace photonlab {
 
@@ -83,12 +84,9 @@ Color RoughPlastic::evaluate(const Vector& outgoing, const Vector& incoming) con
     const double eta = static_cast<double>(index_outside) / index_inside;
     const Vector normal = (outgoing + incoming).normalized();
     const double reflected = fresnel_dielectric(outgoing.dot(normal), eta).reflected;
-    const double shape = facets.distribution(normal) * facets.unhidden(outgoing, normal) *
-                         facets.unhidden(incoming, normal) / (4.0 * outgoing.z * incoming.z);
+    const double shape = facets.reflected(outgoing, incoming, normal);
     const double let_in = static_cast<double>(coat->let_in_at(outgoing.z)) * coat->let_in_at(incoming.z);
-    Color base = diffuse_reflectance;
-    for (int channel = 0; channel < 3; ++channel)
-        base[channel] /= 1.0f - (nonlinear ? base[channel] : 1.0f) * coat->inner_reflectance;
+    const Color base = reflectance_under_coat(diffuse_reflectance, coat->inner_reflectance, nonlinear);
     return specular_reflectance * static_cast<float>(reflected * shape) +
            base * static_cast<float>(let_in * eta * eta / pi);
 }
@@ -103,10 +101,10 @@ float RoughPlastic::coat_share(float cosine) const {
 std::optional<BsdfSample> RoughPlastic::sample(const Vector& outgoing, Carried, const Imath::V2f& u) const {
     if (outgoing.z <= 0.0f) return std::nullopt;
     const float share = coat_share(outgoing.z);
-    const bool is_coat = u.x < share;
-    const float rest = std::min(is_coat ? u.x / share : (u.x - share) / (1.0f - share), 0x1.fffffep-1f);
-    const Vector incoming = is_coat ? mirrored(outgoing, facets.sample(outgoing, {rest, u.y})).normalized()
-                                    : sample_cosine_hemisphere({rest, u.y});
+    const ShareChoice by_coat = choose_by_share(u.x, share);
+    const Imath::V2f rest(by_coat.rest, u.y);
+    const Vector incoming = by_coat.is_chosen ? mirrored(outgoing, facets.sample(outgoing, rest)).normalized()
+                                              : sample_cosine_hemisphere(rest);
     if (incoming.z <= 0.0f) return std::nullopt;
     const float found = density(outgoing, incoming);
     if (!(found > 0.0f)) return std::nullopt;
@@ -131,8 +129,10 @@ RoughPlastic RoughPlastic::read(MaterialReader& reader) {
         .specular_reflectance =
             reader.factor_or_texture("specular_reflectance", 1.0, &RoughPlastic::specular_reflectance)};
     if (plastic.index_outside == plastic.index_inside) return plastic;  // which is refused
-    const auto coat = std::make_shared<const RoughCoat>(make_rough_coat(
-        plastic.facets, static_cast<double>(plastic.index_inside) / plastic.index_outside, !reader.is_version_06()));
+    const double eta = static_cast<double>(plastic.index_inside) / plastic.index_outside;
+    std::shared_ptr<const RoughCoat>& coat =
+        reader.source.rough_coats[{static_cast<double>(plastic.facets.slopes), plastic.facets.alpha, eta}];
+    if (!coat) coat = std::make_shared<const RoughCoat>(make_rough_coat(plastic.facets, eta, !reader.is_version_06()));
     reader.material.data = coat;
     plastic.coat = coat.get();
     return plastic;

@@ -12,8 +12,7 @@ SpecularBranches ThinDielectric::branches(const Vector& outgoing, Carried) const
         fresnel_dielectric(outgoing.z, static_cast<double>(index_outside) / static_cast<double>(index_inside))
             .reflected;
     const double reflected = index_outside == index_inside ? 0.0 : 2.0 * of_face / (1.0 + of_face);
-    if (reflected > 0.0)
-        result.add({-outgoing.x, -outgoing.y, outgoing.z}, reflectance * static_cast<float>(reflected));
+    if (reflected > 0.0) result.add(mirror_direction(outgoing), reflectance * static_cast<float>(reflected));
     if (reflected < 1.0) result.add(-outgoing, transmittance * static_cast<float>(1.0 - reflected));
     return result;
 }

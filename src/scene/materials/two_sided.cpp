@@ -25,6 +25,9 @@ Material TwoSided::read(MaterialReader& reader) {
     Material material = sides.front();
     material.two_sided = true;
     if (sides.size() == 2) material.back = std::make_shared<const Material>(sides.back());
+    // A side is seen from behind as from the front, and so are its normals.
+    material.normals_behind = sides.back().normals;
+    if (material.normals_behind) material.normals_behind->is_mirrored = true;
     return material;
 }
 

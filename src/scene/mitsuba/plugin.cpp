@@ -47,9 +47,7 @@ namespace {
 /// Of elements, by their tags, what other programs that read this format have added to them, and what tells Mitsuba how
 /// to go about its work.
 const std::map<std::string, std::vector<std::string>> harmless_properties{
-    {"bsdf",
-     {"caustic", "caustic_caster", "caustic_receiver", "flip_invalid_normals", "is_caustic", "sample_visible",
-      "use_path_guiding", "use_shadowing_function"}},
+    {"bsdf", {"caustic", "caustic_caster", "caustic_receiver", "is_caustic", "sample_visible", "use_path_guiding"}},
     {"emitter", {"cache", "caustic", "is_caustic", "mis_compensation", "use_path_guiding"}},
     {"shape",
      {"caustic", "caustic_caster", "caustic_receiver", "is_caustic", "preserve_colors", "srgb", "use_path_guiding"}},

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <array>
 #include <functional>
 #include <map>
 #include <memory>
@@ -15,6 +16,7 @@
 namespace photonlab {
 
 struct ColorImage;
+struct RoughCoat;
 
 /// What reading a plugin may need from the scene around it.
 struct SceneSource {
@@ -24,7 +26,9 @@ struct SceneSource {
     std::size_t& image_pixels;                     ///< of all textures and surroundings so far
     std::function<void(const std::string&)> note;  ///< takes what the user should know, a sentence each
     std::map<std::string, std::shared_ptr<const ColorImage>>& images;  ///< of textures, by file and decoding
-    int depth = 0;                                                     ///< of materials or textures inside each other
+    std::map<std::array<double, 3>, std::shared_ptr<const RoughCoat>>& rough_coats;  ///< by slopes, alpha and index
+    int depth = 0;                        ///< of materials or textures inside each other
+    std::size_t* nested_count = nullptr;  ///< of all materials inside the outermost one
 };
 
 struct Plugin {

@@ -132,6 +132,13 @@ TextureGradient Bitmap::gradient_at(const Imath::V2f& texture_coordinate) const 
     return {by_x * to_uv[0][0] + by_y * to_uv[0][1], by_x * to_uv[1][0] + by_y * to_uv[1][1]};
 }
 
+Color Bitmap::largest() const {
+    Color result = image->pixels.front();
+    for (const Color& pixel : image->pixels)
+        for (int channel = 0; channel < 3; ++channel) result[channel] = std::max(result[channel], pixel[channel]);
+    return result;
+}
+
 Bitmap Bitmap::read(Plugin& plugin) {
     const std::filesystem::path file = plugin.require_file();
     plugin.require_no_objects();

@@ -25,6 +25,7 @@ struct Bitmap {
 
     Color color_at(const Imath::V2f& texture_coordinate) const;
     TextureGradient gradient_at(const Imath::V2f& texture_coordinate) const;
+    Color largest() const;
     static Bitmap read(Plugin& plugin);
     void check(const std::string& place) const;
 

@@ -10,18 +10,19 @@ namespace photonlab {
 
 Color Checkerboard::color_at(const Imath::V2f& texture_coordinate) const {
     const VectorD uv = transform_point(to_uv, {texture_coordinate.x, texture_coordinate.y, 0.0});
-    const auto is_upper = [](double x) { return x - std::floor(x) > 0.5; };
+    const auto is_upper = [&](double x) {
+        if (is_mirrored) return std::fmod(std::trunc(2.0 * x), 2.0) != 0.0;
+        return x - std::floor(x) > 0.5;
+    };
     return is_upper(uv.x) == is_upper(uv.y) ? first : second;
 }
 
-/// Mitsuba 3 has color0 where one coordinate is in its upper half, 0.6 where both or neither are.
 Checkerboard Checkerboard::read(Plugin& plugin) {
     plugin.require_no_objects();
-    Checkerboard board{.first = Color(plugin.properties.reflectance("color0").value_or(ColorD(0.4))),
-                       .second = Color(plugin.properties.reflectance("color1").value_or(ColorD(0.2))),
-                       .to_uv = read_uv_transform(plugin)};
-    if (!plugin.is_version_06()) std::swap(board.first, board.second);
-    return board;
+    return {.first = Color(plugin.properties.reflectance("color0").value_or(ColorD(0.4))),
+            .second = Color(plugin.properties.reflectance("color1").value_or(ColorD(0.2))),
+            .to_uv = read_uv_transform(plugin),
+            .is_mirrored = plugin.is_version_06()};
 }
 
 void Checkerboard::check(const std::string& place) const {

@@ -20,6 +20,10 @@ TextureGradient Scale::gradient_at(const Imath::V2f& texture_coordinate) const {
     return gradient;
 }
 
+Color Scale::largest() const {
+    return nested ? largest_color(nested->texture) * factor : factor;
+}
+
 Scale Scale::read(Plugin& plugin) {
     Scale scale{.nested = nullptr, .factor = Color(plugin.properties.reflectance("scale").value_or(ColorD(1.0)))};
     if (const auto value = plugin.properties.reflectance("value")) scale.factor *= Color(*value);

@@ -16,6 +16,7 @@ struct Scale {
 
     Color color_at(const Imath::V2f& texture_coordinate) const;
     TextureGradient gradient_at(const Imath::V2f& texture_coordinate) const;
+    Color largest() const;
     static Scale read(Plugin& plugin);
     void check(const std::string& place) const;
 };

@@ -79,6 +79,8 @@ Texture read_texture(const XmlElement& element, const SceneSource& source, Textu
     const auto& kind = find_kind(kinds, element);
     Plugin plugin(element, source);
     Texture texture = kind.read(plugin);
+    if (auto* board = std::get_if<Checkerboard>(&texture); board && use == TextureUse::Share && !plugin.is_version_06())
+        std::swap(board->first, board->second);  // so does Mitsuba 3 where a checkerboard is one number
     if (use == TextureUse::Reflectance) require_reflectance(texture, plugin.properties.place_of("filename"));
     return texture;
 }

@@ -27,6 +27,11 @@ inline TextureGradient gradient_at(const Texture& texture, const Imath::V2f& tex
     return std::visit([&](const auto& kind) { return kind.gradient_at(texture_coordinate); }, texture);
 }
 
+/// The largest value of each channel.
+inline Color largest_color(const Texture& texture) {
+    return std::visit([](const auto& kind) { return kind.largest(); }, texture);
+}
+
 /// Brightness of linear sRGB.
 template <typename T>
 T luminance(const Imath::Color3<T>& color) {
