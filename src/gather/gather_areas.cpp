@@ -39,30 +39,48 @@ bool is_whole(const SeenArea& area) {
 /// Around one point: flat areas at two neighbouring radii, or, where these are not known, a measure by lines.
 struct GatherAreas::Around {
     RadiusRange flat_range;
+    int flat_step = -1;
     double outermost = 0.0;  // radii between which flat areas are interpolated
     double innermost = 0.0;
+    FlatArea outer;
+    FlatArea inner;
+    RadiusRange surroundings_range;
     std::shared_ptr<const FlatSurroundings> surroundings;  // where they are flat
-    FlatArea outer;                                        // at the step's radius
-    FlatArea inner;                                        // at the next one's
     std::unique_ptr<SeenArea> measured;
 
-    void look(const Scene& scene, const SurfaceEnd& point, Kernel kernel, double radius) {
-        const int step = static_cast<int>(flat_steps * depth_of(radius));
-        flat_range = range_of_step(step, flat_steps);
-        outermost = radius_at(static_cast<double>(step) / flat_steps);
-        innermost = radius_at((step + 1.0) / flat_steps);
-        surroundings.reset();
-        auto found = flat_surroundings(scene, point, outermost);
-        if (!found) return;
-        outer = flat_area(*found, kernel, outermost);
-        inner = flat_area(*found, kernel, innermost);
-        if (outer.is_valid && inner.is_valid)
-            surroundings = std::make_shared<const FlatSurroundings>(std::move(*found));
+    /// True where the surroundings are flat; their areas around this radius are known then.
+    bool is_flat(const Scene& scene, const SurfaceEnd& point, Kernel kernel, double radius) {
+        if (!surroundings_range.holds(radius)) look(scene, point, radius);
+        if (!surroundings) return false;
+        if (!flat_range.holds(radius)) measure_flat(kernel, radius);
+        return outer.is_valid && inner.is_valid;
     }
 
     FlatArea flat(double radius) const {
         const double share = std::clamp((radius - innermost) / (outermost - innermost), 0.0, 1.0);
         return {between(inner.moments, outer.moments, share), outer.is_obstructed || inner.is_obstructed};
+    }
+
+private:
+    void look(const Scene& scene, const SurfaceEnd& point, double radius) {
+        const int step = static_cast<int>(whole_steps * depth_of(radius));
+        surroundings_range = range_of_step(step, whole_steps);
+        flat_range = {};
+        flat_step = -1;
+        surroundings.reset();
+        if (auto found = flat_surroundings(scene, point, radius_at(static_cast<double>(step) / whole_steps)))
+            surroundings = std::make_shared<const FlatSurroundings>(std::move(*found));
+    }
+
+    void measure_flat(Kernel kernel, double radius) {
+        const int step = static_cast<int>(flat_steps * depth_of(radius));
+        const bool follows = step == flat_step + 1 && flat_step >= 0;
+        flat_range = range_of_step(step, flat_steps);
+        flat_step = step;
+        outermost = radius_at(static_cast<double>(step) / flat_steps);
+        innermost = radius_at((step + 1.0) / flat_steps);
+        outer = follows ? inner : flat_area(*surroundings, kernel, outermost);
+        inner = flat_area(*surroundings, kernel, innermost);
     }
 };
 
@@ -124,8 +142,8 @@ GatherArea GatherAreas::at(const SurfaceEnd& point, std::size_t index, double ra
     if (settings_.mode == AreaMode::Disc || is_whole(point, known_[index], radius)) return {};
     if (!around_[index]) around_[index] = std::make_unique<Around>();
     Around& around = *around_[index];
-    if (!around.flat_range.holds(radius)) around.look(scene_, point, settings_.kernel, radius);
-    if (around.surroundings) return area_of(point, around.flat(radius), around.surroundings, radius);
+    if (around.is_flat(scene_, point, settings_.kernel, radius))
+        return area_of(point, around.flat(radius), around.surroundings, radius);
 
     const int series = static_cast<int>(depth_of(radius) / measured_octaves);
     const double top = radius_at(measured_octaves * series);
