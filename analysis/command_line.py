@@ -9,14 +9,14 @@ import warnings
 from pathlib import Path
 
 from analysis.figures import (best_alpha, bias_variance, calibration, convergence, equal_time, extremes, gallery, grid, memory,
-                              methods, probes, scaling, strip, time_to_error, tradeoff)
+                              methods, probes, radii, scaling, strip, time_to_error, tradeoff)
 from analysis.records.files import InputError, reason
 from analysis.report import page
 from analysis.statistics import decomposition, fits
 
 # In this order all are made of a folder: a command reads what those before it wrote.
 COMMANDS = [convergence.COMMAND, strip.COMMAND, gallery.COMMAND, decomposition.COMMAND, fits.COMMAND, bias_variance.COMMAND,
-            memory.COMMAND, best_alpha.COMMAND, methods.COMMAND, calibration.COMMAND, grid.COMMAND, equal_time.COMMAND,
+            memory.COMMAND, best_alpha.COMMAND, methods.COMMAND, radii.COMMAND, calibration.COMMAND, grid.COMMAND, equal_time.COMMAND,
             time_to_error.COMMAND, tradeoff.COMMAND, probes.COMMAND, scaling.COMMAND, extremes.COMMAND, page.COMMAND]
 
 

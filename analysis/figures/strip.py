@@ -15,7 +15,6 @@ from analysis.command import Command, positive
 from analysis.drawing import pictures, style
 from analysis.drawing.saving import save
 from analysis.records import files, images, methods, records, references
-from analysis.records.columns import as_number
 from analysis.statistics import errors
 
 COMPONENT_TITLES = {"total": "whole image", "emission": "emission alone", "direct": "direct light alone",
@@ -45,27 +44,6 @@ class Strip:
         return [entry.difference for entry in self.entries if entry.difference is not None]
 
 
-def shown_methods(scene, alphas, all_methods):
-    """The first method of each kind (PM by radius, PM by k, PPM, ...); or all; or of those with an alpha the given ones."""
-    first_rows = scene.rows.drop_duplicates("method").set_index("method")
-    shown, kinds = [], set()
-    for label in scene.labels:
-        row = first_rows.loc[label]
-        kind = methods.kind_of(row, scene.columns)
-        chosen = as_number(row["alpha"]) in alphas if alphas and row["alpha"] else kind not in kinds
-        if all_methods or chosen:
-            shown.append(label)
-            kinds.add(kind)
-    return shown
-
-
-def run_of(scene, label, seed):
-    """A method's run with a given seed (None: the lowest), by its rows; None without such a run."""
-    rows = scene.of_method(label)
-    rows = rows[rows["seed"] == (rows["seed"].min() if seed is None else seed)]
-    return None if rows.empty else rows
-
-
 def chosen_pass(passes_of_methods, wanted):
     """The wanted pass, or the last one of which every method has a snapshot; None where there is no such pass."""
     if wanted is not None:
@@ -77,8 +55,8 @@ def chosen_pass(passes_of_methods, wanted):
 def collect(scene, options):
     """What there is to draw of the records of one scene."""
     found, strip = {}, Strip()
-    for label in shown_methods(scene, options.alpha, options.all):
-        rows = run_of(scene, label, options.seed)
+    for label in methods.shown_methods(scene, options.alpha, options.all):
+        rows = methods.run_of(scene, label, options.seed)
         run = None if rows is None else scene.run(rows["run"].iloc[0])
         if run and run.snapshots:
             found[label] = rows, run

@@ -5,6 +5,8 @@ and may be another after a night on another machine.
 
 import itertools
 
+from analysis.records.columns import as_number
+
 LABEL_BEGINS = ["integrator", "mode"]    # the first is always named, the second where it differs at all
 
 
@@ -75,3 +77,24 @@ def methods_in_order(rows, columns):
     first_rows = rows.drop_duplicates("method").set_index("method")
     return [label for label, _ in sorted(first_rows.iterrows(), key=lambda item: [columns[name].rank(item[1][name])
                                                                                  for name in ordering])]
+
+
+def shown_methods(scene, alphas, all_methods):
+    """The first method of each kind (PM by radius, PM by k, PPM, ...); or all; or of those with an alpha the given ones."""
+    first_rows = scene.rows.drop_duplicates("method").set_index("method")
+    shown, kinds = [], set()
+    for label in scene.labels:
+        row = first_rows.loc[label]
+        kind = kind_of(row, scene.columns)
+        chosen = as_number(row["alpha"]) in alphas if alphas and row["alpha"] else kind not in kinds
+        if all_methods or chosen:
+            shown.append(label)
+            kinds.add(kind)
+    return shown
+
+
+def run_of(scene, label, seed):
+    """A method's run with a given seed (None: the lowest), by its rows; None without such a run."""
+    rows = scene.of_method(label)
+    rows = rows[rows["seed"] == (rows["seed"].min() if seed is None else seed)]
+    return None if rows.empty else rows

@@ -198,13 +198,13 @@ Experiment experiment_of(const RenderOptions& options, const ChosenSettings& set
     SceneEntry entry;
     entry.file = options.scene;
     entry.name = valid_text(scene.name);
+    entry.samples_per_pixel = options.samples_per_pixel;
 
     Experiment experiment;
     experiment.file = options.scene;
     experiment.name = experiment.title = "render";
     experiment.scenes = {std::move(entry)};
     experiment.runs = {std::move(run)};
-    experiment.samples_per_pixel = options.samples_per_pixel;
     experiment.threads = options.threads;
     return experiment;
 }

@@ -139,6 +139,25 @@ private:
         return {static_cast<int>(sides[0]), static_cast<int>(sides[1])};
     }
 
+    /// One number or several.
+    std::vector<int> samples_per_pixel(const toml::node& node) const {
+        constexpr std::string_view name = "samples_per_pixel";
+        constexpr std::int64_t most = 1 << 20;
+        std::vector<int> samples;
+        const auto add = [&](const toml::node& item) {
+            samples.push_back(static_cast<int>(integer(item, name, 1, most)));
+            at(place(item), [&] { require_perfect_square(samples.back()); });
+        };
+        if (!node.is_array()) {
+            add(node);
+            return samples;
+        }
+        if (node.as_array()->empty())
+            throw InputError(place(node), fmt::format("{}: the list of values is empty", name));
+        for (const toml::node& item : *node.as_array()) add(item);
+        return samples;
+    }
+
     SettingValue value(const toml::node& node, std::string_view what) const {
         if (const auto boolean = node.value_exact<bool>()) return *boolean;
         if (const auto number = node.value_exact<std::int64_t>()) return *number;
@@ -215,11 +234,7 @@ private:
         experiment_.threads = hardware_threads();
         if (const toml::node* node = root.get("threads"))
             experiment_.threads = static_cast<int>(integer(*node, "threads", 1, most_threads));
-        if (const toml::node* node = root.get("samples_per_pixel")) {
-            const std::int64_t samples = integer(*node, "samples_per_pixel", 1, 1 << 20);
-            at(place(*node), [&] { require_perfect_square(samples); });
-            experiment_.samples_per_pixel = static_cast<int>(samples);
-        }
+        if (const toml::node* node = root.get("samples_per_pixel")) samples_per_pixel_ = samples_per_pixel(*node);
         if (const toml::node* node = root.get("resolution")) resolution_ = resolution(*node);
         if (const toml::node* node = root.get("decomposition")) {
             const auto value = node->value_exact<bool>();
@@ -301,13 +316,16 @@ private:
         for (const toml::node& node : *scenes) {
             SceneEntry scene;
             scene.resolution = resolution_;
+            std::vector<int> samples = samples_per_pixel_;
             if (const toml::table* table = node.as_table()) {
-                require_known(*table, {"path", "reference", "resolution", "name", "regions", "probes"});
+                require_known(*table,
+                              {"path", "reference", "resolution", "samples_per_pixel", "name", "regions", "probes"});
                 if (!table->contains("path")) throw InputError(place(node), "scene: path is missing");
                 scene.file = path(*table->get("path"), "path");
                 if (const toml::node* reference = table->get("reference"))
                     scene.reference = path(*reference, "reference");
                 if (const toml::node* pixels = table->get("resolution")) scene.resolution = resolution(*pixels);
+                if (const toml::node* own = table->get("samples_per_pixel")) samples = samples_per_pixel(*own);
                 read_regions(*table, scene);
                 read_probes(*table, scene);
                 if (const toml::node* name = table->get("name")) scene.name = file_safe(string(*name, "name"));
@@ -322,7 +340,11 @@ private:
                     in_folder ? std::filesystem::absolute(scene.file).parent_path() : scene.file;
                 scene.name = file_safe(in_folder ? named.filename().string() : named.stem().string());
             }
-            experiment_.scenes.push_back(std::move(scene));
+            for (const int count : samples) {
+                scene.samples_per_pixel = count;
+                if (samples.size() > 1) scene.swept = fmt::format("_samples_per_pixel-{}", count);
+                experiment_.scenes.push_back(scene);
+            }
         }
     }
 
@@ -393,7 +415,8 @@ private:
         const std::string name = method.name.value_or(settings.values.integrator);
         for (const std::uint64_t seed : seeds_) {
             ExperimentRun run;
-            run.point = file_safe(fmt::format("{}_{}{}", experiment_.scenes[scene].name, name, swept));
+            const SceneEntry& entry = experiment_.scenes[scene];
+            run.point = file_safe(fmt::format("{}_{}{}{}", entry.name, name, entry.swept, swept));
             run.name = fmt::format("{}_seed-{}", run.point, seed);
             run.scene = scene;
             run.method = name;
@@ -434,6 +457,7 @@ private:
     Experiment experiment_;
     std::optional<SmokeLimits> smoke_;
     std::optional<Resolution> resolution_;
+    std::vector<int> samples_per_pixel_{1};
     std::uint64_t records_ = 0;
     std::uint64_t written_passes_ = 1;
     std::uint64_t most_written_passes_ = 1;

@@ -48,6 +48,8 @@ struct SceneEntry {
     std::string name;                                ///< of the scene's folder, or of the file if that is not scene.xml
     std::optional<std::filesystem::path> reference;  ///< folder of halves, or an EXR; without one no errors are taken
     std::optional<Resolution> resolution;            ///< in place of the scene file's
+    int samples_per_pixel = 1;                       ///< a perfect square
+    std::string swept;                               ///< of that, in the names of runs: where several were given
     std::vector<Region> regions;
     std::vector<Probe> probes;
 };
@@ -77,7 +79,6 @@ struct Experiment {
     std::string title;
     std::vector<SceneEntry> scenes;
     std::vector<ExperimentRun> runs;  ///< scene by scene
-    int samples_per_pixel = 1;        ///< a perfect square
     int threads = 1;
     bool decomposition = false;  ///< keep sums over seeds, from which bias and variance are told apart
 };

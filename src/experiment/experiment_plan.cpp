@@ -83,7 +83,7 @@ std::string point_key(const Experiment& experiment, const ExperimentRun& run, co
         {"recorded", run.plan.recorded},
         {"width", scene.camera.width},
         {"height", scene.camera.height},
-        {"samples_per_pixel", experiment.samples_per_pixel},
+        {"samples_per_pixel", entry.samples_per_pixel},
         {"scene", scene.hash},
         {"probes", probes},
         {"reference",
@@ -156,7 +156,7 @@ private:
     std::string reference_key_of(const ExperimentRun& run, const Scene& scene, const MethodSettings& method) {
         const SceneEntry& entry = experiment_.scenes[run.scene];
         if (!entry.reference) return "";
-        const ReferenceSubject subject = subject_of(scene, experiment_.samples_per_pixel, method);
+        const ReferenceSubject subject = subject_of(scene, entry.samples_per_pixel, method);
         const auto [known, is_new] = reference_keys_.try_emplace({run.scene, subject.max_depth, subject.positions});
         if (is_new) known->second = check_reference(*entry.reference, subject);
         return known->second;
@@ -261,7 +261,8 @@ std::optional<GroupMemory> largest_memory(const Experiment& experiment, const Pr
         if (!known.insert(points).second) continue;
         const std::size_t scene = group[0]->run->scene;
         MemoryEstimator& estimator =
-            estimators.try_emplace(scene, *prepared.scenes[scene], experiment.samples_per_pixel).first->second;
+            estimators.try_emplace(scene, *prepared.scenes[scene], experiment.scenes[scene].samples_per_pixel)
+                .first->second;
         const MemoryEstimate estimate = estimator.of(settings, images_kept(experiment, *group[0]));
         if (!largest || estimate.total() > largest->estimate.total()) largest = {group[0]->run->name, estimate};
     }
@@ -286,11 +287,11 @@ public:
         if (!is_new) return known->second;
         const std::size_t index = run.run->scene;
         const Scene& scene = *prepared_.scenes[index];
-        MemoryEstimator& memory = memory_.try_emplace(index, scene, experiment_.samples_per_pixel).first->second;
+        const int samples_per_pixel = experiment_.scenes[index].samples_per_pixel;
+        MemoryEstimator& memory = memory_.try_emplace(index, scene, samples_per_pixel).first->second;
         const double cutoff = run.settings.method.branch_cutoff;
         const auto [view, is_view_new] = views_.try_emplace({index, cutoff});
-        if (is_view_new)
-            view->second = trace_coarse_view(scene, experiment_.samples_per_pixel, experiment_.threads, cutoff);
+        if (is_view_new) view->second = trace_coarse_view(scene, samples_per_pixel, experiment_.threads, cutoff);
         known->second = {estimate_(scene, view->second, run.settings),
                          memory.of({run.settings}, images_kept(experiment_, run)).total()};
         return known->second;

@@ -93,11 +93,11 @@ public:
         const std::size_t scene_index = run.run->scene;
         const SceneEntry& entry = experiment_.scenes[scene_index];
         const Scene& scene = *prepared_.scenes[scene_index];
-        const ReferenceSubject subject = subject_of(scene, experiment_.samples_per_pixel, run.settings.method);
+        const ReferenceSubject subject = subject_of(scene, entry.samples_per_pixel, run.settings.method);
         const double cutoff = run.settings.method.branch_cutoff;
         if (scene_ != scene_index) reference_.reset();
         if (scene_ != scene_index || cutoff_ != cutoff)
-            hit_points_ = trace_hit_points(scene, experiment_.samples_per_pixel, experiment_.threads, cutoff);
+            hit_points_ = trace_hit_points(scene, entry.samples_per_pixel, experiment_.threads, cutoff);
         if (scene_ != scene_index)
             for (const std::string& reason : why_images_are_plain(scene, hit_points_))
                 progress.finished(entry.name + ": " + reason);

@@ -117,7 +117,7 @@ OpenRun open_run(const RunGroup& group, const PreparedRun& prepared) {
                   std::nullopt,
                   {}},
         Recorder({group.experiment.name, prepared.run->name, entry.name, prepared.settings, group.scene.camera.width,
-                  group.scene.camera.height, group.experiment.samples_per_pixel, group.hit_points.points.size()},
+                  group.scene.camera.height, entry.samples_per_pixel, group.hit_points.points.size()},
                  group.reference, prepared.files.rows),
         {},
         {},

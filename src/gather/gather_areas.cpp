@@ -10,8 +10,8 @@ namespace {
 /// Radii are told apart by octaves and parts of these, from one that holds the scene around any point of it down to
 /// where lines see nothing any more.
 constexpr double largest_radius = 2.0;
-constexpr double smallest_radius = 4e-5;  // 31 half octaves below
-constexpr int whole_steps = 2;            ///< an octave, at which discs are asked whether they are whole
+constexpr double smallest_radius = 4e-5;
+constexpr int whole_steps = 2;  ///< an octave, at which discs are asked whether they are whole
 constexpr int flat_steps = 16;  ///< an octave, between which flat areas are interpolated: to 0.03% of the disc
 constexpr double measured_octaves = 2.0;  ///< from the top of a SeenArea to its least radius
 
@@ -21,6 +21,11 @@ double depth_of(double radius) {
 }
 double radius_at(double depth) {
     return largest_radius * std::exp2(-depth);
+}
+
+/// The last step holds all smaller radii.
+int last_step(int steps) {
+    return static_cast<int>(steps * depth_of(smallest_radius));
 }
 
 /// Nothing is missing and nothing hidden, as far as lines can tell.
@@ -33,29 +38,49 @@ bool is_whole(const SeenArea& area) {
 
 /// Around one point: flat areas at two neighbouring radii, or, where these are not known, a measure by lines.
 struct GatherAreas::Around {
+    RadiusRange flat_range;
     int flat_step = -1;
+    double outermost = 0.0;  // radii between which flat areas are interpolated
+    double innermost = 0.0;
+    FlatArea outer;
+    FlatArea inner;
+    RadiusRange surroundings_range;
     std::shared_ptr<const FlatSurroundings> surroundings;  // where they are flat
-    FlatArea outer;                                        // at the step's radius
-    FlatArea inner;                                        // at the next one's
     std::unique_ptr<SeenArea> measured;
 
-    void look(const Scene& scene, const SurfaceEnd& point, Kernel kernel, int step) {
-        const double radius = radius_at(static_cast<double>(step) / flat_steps);
-        flat_step = step;
-        surroundings.reset();
-        auto found = flat_surroundings(scene, point, radius);
-        if (!found) return;
-        outer = flat_area(*found, kernel, radius);
-        inner = flat_area(*found, kernel, radius_at((step + 1.0) / flat_steps));
-        if (outer.is_valid && inner.is_valid)
-            surroundings = std::make_shared<const FlatSurroundings>(std::move(*found));
+    /// True where the surroundings are flat; their areas around this radius are known then.
+    bool is_flat(const Scene& scene, const SurfaceEnd& point, Kernel kernel, double radius) {
+        if (!surroundings_range.holds(radius)) look(scene, point, radius);
+        if (!surroundings) return false;
+        if (!flat_range.holds(radius)) measure_flat(kernel, radius);
+        return outer.is_valid && inner.is_valid;
     }
 
     FlatArea flat(double radius) const {
-        const double outermost = radius_at(static_cast<double>(flat_step) / flat_steps);
-        const double innermost = radius_at((flat_step + 1.0) / flat_steps);
         const double share = std::clamp((radius - innermost) / (outermost - innermost), 0.0, 1.0);
         return {between(inner.moments, outer.moments, share), outer.is_obstructed || inner.is_obstructed};
+    }
+
+private:
+    void look(const Scene& scene, const SurfaceEnd& point, double radius) {
+        const int step = static_cast<int>(whole_steps * depth_of(radius));
+        surroundings_range = range_of_step(step, whole_steps);
+        flat_range = {};
+        flat_step = -1;
+        surroundings.reset();
+        if (auto found = flat_surroundings(scene, point, radius_at(static_cast<double>(step) / whole_steps)))
+            surroundings = std::make_shared<const FlatSurroundings>(std::move(*found));
+    }
+
+    void measure_flat(Kernel kernel, double radius) {
+        const int step = static_cast<int>(flat_steps * depth_of(radius));
+        const bool follows = step == flat_step + 1 && flat_step >= 0;
+        flat_range = range_of_step(step, flat_steps);
+        flat_step = step;
+        outermost = radius_at(static_cast<double>(step) / flat_steps);
+        innermost = radius_at((step + 1.0) / flat_steps);
+        outer = follows ? inner : flat_area(*surroundings, kernel, outermost);
+        inner = flat_area(*surroundings, kernel, innermost);
     }
 };
 
@@ -82,14 +107,20 @@ GatherAreas::GatherAreas(const Scene& scene, const GatherAreaSettings& settings,
 
 GatherAreas::~GatherAreas() = default;
 
+GatherAreas::RadiusRange GatherAreas::range_of_step(int step, int steps) {
+    constexpr double rounding = 1e-6;
+    const double above = step < last_step(steps) ? radius_at((step + 1.0) / steps) * (1.0 + rounding) : 0.0;
+    const double below = radius_at(static_cast<double>(step) / steps) * (1.0 - rounding);
+    return {static_cast<float>(above), static_cast<float>(below)};
+}
+
 bool GatherAreas::is_whole(const SurfaceEnd& point, Known& known, double radius) const {
-    const int step = static_cast<int>(whole_steps * depth_of(radius));
-    const std::uint32_t bit = 1u << step;
-    if (!(known.asked & bit)) {
-        known.asked |= bit;
-        if (is_whole_around(scene_, point, radius_at(static_cast<double>(step) / whole_steps))) known.whole |= bit;
+    if (!known.range.holds(radius)) {
+        const int step = static_cast<int>(whole_steps * depth_of(radius));
+        known = {range_of_step(step, whole_steps),
+                 is_whole_around(scene_, point, radius_at(static_cast<double>(step) / whole_steps))};
     }
-    return known.whole & bit;
+    return known.is_whole;
 }
 
 AreaWeights GatherAreas::weights_of(const AreaMoments& moments) const {
@@ -111,12 +142,10 @@ GatherArea GatherAreas::at(const SurfaceEnd& point, std::size_t index, double ra
     if (is_of_disc(point) || is_whole(point, known_[index], radius)) return {};
     if (!around_[index]) around_[index] = std::make_unique<Around>();
     Around& around = *around_[index];
-    const double depth = depth_of(radius);
-    const int step = static_cast<int>(flat_steps * depth);
-    if (around.flat_step != step) around.look(scene_, point, settings_.kernel, step);
-    if (around.surroundings) return area_of(point, around.flat(radius), around.surroundings, radius);
+    if (around.is_flat(scene_, point, settings_.kernel, radius))
+        return area_of(point, around.flat(radius), around.surroundings, radius);
 
-    const int series = static_cast<int>(depth / measured_octaves);
+    const int series = static_cast<int>(depth_of(radius) / measured_octaves);
     const double top = radius_at(measured_octaves * series);
     if (!around.measured || around.measured->top != top)
         around.measured = std::make_unique<SeenArea>(measure_seen_area(

@@ -75,10 +75,18 @@ public:
     std::uint64_t bytes() const;
 
 private:
-    /// What is known around a hit point: a bit a radius, the largest one's lowest.
+    /// Radii of one step, without those so near its ends that rounding might count them to the next.
+    struct RadiusRange {
+        float above = 0.0f;
+        float below = 0.0f;
+        bool holds(double radius) const { return radius > above && radius < below; }
+    };
+    static RadiusRange range_of_step(int step, int steps);
+
+    /// What was last asked around a hit point; its radius stays in a step for many passes.
     struct Known {
-        std::uint32_t asked = 0;
-        std::uint32_t whole = 0;
+        RadiusRange range;
+        bool is_whole = false;
     };
     struct Around;
 

@@ -295,6 +295,10 @@ std::string encode(const Image& image, const Metadata& metadata, ExrCompression 
     std::vector<Layer> estimates;
     if (image.estimated_error) estimates = layers_of(*image.estimated_error);
     for (const Layer& layer : estimates) add(layer.name + ".", layer.pixels);
+    if (!image.radius.empty()) {
+        header.channels().insert("radius", Imf::Channel(Imf::FLOAT));
+        frame.insert("radius", Imf::Slice::Make(Imf::FLOAT, image.radius.data(), header.dataWindow()));
+    }
 
     Imf::StdOSStream stream;
     {

@@ -7,7 +7,7 @@
 // sum to the picture: without it, R, G, B alone are read.
 //
 // What a method says of its own error is in estimated_bias.R, ... and estimated_deviation.R, ..., beside the picture:
-// not among the layers, and read only by name.
+// not among the layers, and read only by name. So is the radius of its next gather, in one channel called radius.
 //
 // The picture is R, G, B. Where another program has taken layers away, or has changed them or R, G, B, the difference
 // is read as one more layer, "rest", so that the sum of the layers is always the picture.

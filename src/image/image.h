@@ -28,7 +28,9 @@ struct Image {
     int width = 0;
     int height = 0;
     std::vector<Layer> layers;
-    std::optional<EstimatedError> estimated_error = std::nullopt;  ///< no layer: beside the picture
+    // No layers: beside the picture.
+    std::optional<EstimatedError> estimated_error = std::nullopt;
+    std::vector<float> radius = {};  ///< scene units, a value a pixel, 0 where nothing is gathered; or empty
 
     /// The layer's pixels; nullptr when there is none of that name.
     const std::vector<Color>* find(std::string_view name) const;

@@ -191,6 +191,22 @@ StageTimes PassLoop::begin_images(const std::vector<std::size_t>& which) {
     return are_wanted ? timed(Stage::Build, [&] { photons_.index_all_passes(); }) : StageTimes{};
 }
 
+std::vector<float> PassLoop::radii_of(const Integrator& integrator) const {
+    const std::size_t pixels = pixel_count(hit_points_);
+    std::vector<double> sums(pixels, 0.0);
+    std::vector<double> counts(pixels, 0.0);
+    for (std::size_t i = 0; i < hit_points_.points.size(); ++i) {
+        const std::optional<GatherState> state = integrator.gather_state(i);
+        if (!state) return {};
+        const std::uint32_t pixel = hit_points_.points[i].pixel;
+        sums[pixel] += state->radius;
+        counts[pixel] += 1.0;
+    }
+    std::vector<float> radii(pixels);
+    for (std::size_t i = 0; i < pixels; ++i) radii[i] = static_cast<float>(sums[i] / std::max(1.0, counts[i]));
+    return radii;
+}
+
 Image PassLoop::image(std::size_t index, const StageTimes& indexing) {
     Method& method = methods_[index];
     method.state.times = method.passes_alone;
@@ -213,7 +229,8 @@ Image PassLoop::image(std::size_t index, const StageTimes& indexing) {
             {{std::string(emission_layer), method.layers.emission()},
              {std::string(direct_layer), std::move(direct)},
              {std::string(gathered_layer), std::move(own.gathered)}},
-            std::move(own.estimated_error)};
+            std::move(own.estimated_error),
+            radii_of(*method.integrator)};
 }
 
 Image PassLoop::image() {

@@ -119,6 +119,7 @@ private:
     void describe(const Method& method, RunState& state) const;
     StageTimes begin_images(const std::vector<std::size_t>& which);
     Image image(std::size_t method, const StageTimes& indexing);
+    std::vector<float> radii_of(const Integrator& integrator) const;  // Image::radius
 
     const Scene& scene_;
     const HitPoints& hit_points_;

@@ -62,8 +62,24 @@ TEST_F(ExperimentFile, TopLevelSettingsAreDefaultsWhereTheyAreUsed) {
 }
 
 TEST_F(ExperimentFile, SamplesPerPixelAreOneUnlessItSaysOtherwise) {
-    EXPECT_EQ(read(least + ppm).samples_per_pixel, 1);
-    EXPECT_EQ(read(least + "samples_per_pixel = 9\n" + ppm).samples_per_pixel, 9);
+    EXPECT_EQ(read(least + ppm).scenes[0].samples_per_pixel, 1);
+    EXPECT_EQ(read(least + "samples_per_pixel = 9\n" + ppm).scenes[0].samples_per_pixel, 9);
+}
+
+// One scene of them for each, with hit points of its own; its name stays, so that figures have them in one panel.
+TEST_F(ExperimentFile, SamplesPerPixelCanBeSwept) {
+    const Experiment experiment = read(
+        "passes = 8\nsamples_per_pixel = [1, 16]\n"
+        "scenes = [\"box/scene.xml\", { path = \"lamp.xml\", samples_per_pixel = 4 }]\n" +
+        ppm);
+    EXPECT_EQ(names(experiment), (std::vector<std::string>{"box_ppm_samples_per_pixel-1_seed-1",
+                                                           "box_ppm_samples_per_pixel-16_seed-1", "lamp_ppm_seed-1"}));
+    ASSERT_EQ(experiment.scenes.size(), 3u);
+    EXPECT_EQ(experiment.scenes[1].name, "box");
+    EXPECT_EQ(experiment.scenes[1].samples_per_pixel, 16);
+    EXPECT_EQ(experiment.scenes[2].samples_per_pixel, 4);
+    EXPECT_EQ(refusal("passes = 8\nscenes = [\"lamp.xml\"]\nsamples_per_pixel = [1, 3]\n" + ppm),
+              ":3: samples_per_pixel: expected a perfect square from 1 to 1048576, got 3");
 }
 
 TEST_F(ExperimentFile, PassZeroAndTheLastAreAlwaysRecorded) {

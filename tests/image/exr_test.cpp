@@ -188,6 +188,22 @@ TEST(Exr, OtherProgramsSeeTheSumOfTheLayersInRgb) {
     for (std::size_t i = 0; i < red.size(); ++i) EXPECT_EQ(red[i], static_cast<float>(sum[i].x));
 }
 
+TEST(Exr, TheRadiusIsOneChannelThatIsNoLayer) {
+    const ScratchFolder folder;
+    Image image = random_image(7, 5);
+    for (int i = 0; i < 35; ++i) image.radius.push_back(static_cast<float>(i) * 0.1f);
+    const std::filesystem::path file = folder / "image.exr";
+    write_exr(file, image);
+    std::vector<float> radius(35);
+    Imf::InputFile input(file.string().c_str());
+    Imf::FrameBuffer frame;
+    frame.insert("radius", Imf::Slice::Make(Imf::FLOAT, radius.data(), input.header().dataWindow()));
+    input.setFrameBuffer(frame);
+    input.readPixels(0, 4);
+    EXPECT_EQ(radius, image.radius);
+    EXPECT_EQ(read_exr(file).layers.size(), image.layers.size());
+}
+
 TEST(Exr, IsCompressedAsItIsAskedFor) {
     const ScratchFolder folder;
     const auto compression = [&](ExrCompression asked) {

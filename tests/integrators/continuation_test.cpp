@@ -2,33 +2,43 @@
 
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <sstream>
 
 #include "tests/statistical/rendering.h"
 #include "tests/statistical/scenes.h"
+#include "tests/support/radius_rules.h"
 
 namespace photonlab::test {
 namespace {
 
-std::vector<MethodSettings> methods() {
-    return {
-        {.schedule = ScheduleName::Hachisuka},
-        {.schedule = ScheduleName::KnausZwicker, .alpha = 0.5},
-        {.direct = DirectMode::Photons},
-        {.kernel = Kernel::Cone, .area = AreaMode::Seen, .area_lines = 4},
-        {.integrator = "sppm", .area = AreaMode::Linear, .area_lines = 4},
-        {.integrator = "photonmapper", .mode = GatherMode::Nearest, .k = 20, .area = AreaMode::Seen, .area_lines = 4},
-        {.integrator = "photonmapper", .mode = GatherMode::Radius},
-        {.integrator = "photonmapper", .mode = GatherMode::Nearest, .k = 20},
-        {.integrator = "path"}};
+std::vector<NamedMethod> methods() {
+    std::vector<NamedMethod> methods = methods_by_every_radius_rule({});
+    const MethodSettings seen{.kernel = Kernel::Cone, .area = AreaMode::Seen, .area_lines = 4};
+    const MethodSettings linear{.integrator = "sppm", .area = AreaMode::Linear, .area_lines = 4};
+    const MethodSettings nearest{.integrator = "photonmapper", .mode = GatherMode::Nearest, .k = 20};
+    MethodSettings seen_nearest = nearest;
+    seen_nearest.area = AreaMode::Seen;
+    seen_nearest.area_lines = 4;
+    for (const NamedMethod& method :
+         std::vector<NamedMethod>{{"ppm alpha", {.schedule = ScheduleName::KnausZwicker, .alpha = 0.5}},
+                                  {"ppm direct photons", {.direct = DirectMode::Photons}},
+                                  {"ppm seen", seen},
+                                  {"sppm linear", linear},
+                                  {"photonmapper seen", seen_nearest},
+                                  {"photonmapper radius", {.integrator = "photonmapper", .mode = GatherMode::Radius}},
+                                  {"photonmapper nearest", nearest},
+                                  {"path", {.integrator = "path"}}})
+        methods.push_back(method);
+    return methods;
 }
 
-class Continuation : public ::testing::TestWithParam<MethodSettings> {
+class Continuation : public ::testing::TestWithParam<NamedMethod> {
 protected:
     Continuation() : scene_(build_scene(room(16, 12))), hit_points_(trace_hit_points(scene_, 1, 1)) {}
 
     MethodSettings method() const {
-        MethodSettings settings = GetParam();
+        MethodSettings settings = GetParam().settings;
         settings.photons_per_pass = 500;
         return settings;
     }
@@ -107,12 +117,9 @@ TEST_P(Continuation, RefusesTheStateOfOtherHitPoints) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OfEveryMethod, Continuation, ::testing::ValuesIn(methods()), [](const auto& tested) {
-    const MethodSettings& method = tested.param;
-    std::string name = method.integrator;
-    if (name == "ppm") name += method.schedule == ScheduleName::Hachisuka ? "Hachisuka" : "KnausZwicker";
-    if (name == "photonmapper") name += method.mode == GatherMode::Radius ? "Radius" : "Nearest";
-    if (method.area != AreaMode::Disc) name += method.area == AreaMode::Seen ? "Seen" : "Linear";
-    return name + (method.direct == DirectMode::Photons ? "DirectPhotons" : "");
+    std::string name;
+    for (const char c : tested.param.name) name += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+    return name;
 });
 
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "integrators/layers.h"
 #include "tests/statistical/rendering.h"
 #include "tests/statistical/scenes.h"
@@ -95,6 +97,25 @@ TEST_F(Loop, SumsEmissionAndDirectLightInPixelsWherePointsAreNew) {
                     EXPECT_NEAR(found.find(layer)->at(i)[c], value, 1e-6f * value) << layer << ' ' << i;
                 }
     }
+}
+
+// Of each pixel's hit points; of pixels that see nothing, and of methods that gather nothing, there is none.
+TEST_F(Loop, GivesTheRadiusOfEachPixelWithTheImage) {
+    for (const std::string name : {"ppm", "sppm", "photonmapper"}) {
+        PassLoop method = loop_of({.integrator = name, .photons_per_pass = 2000}, scene_, hit_points_);
+        for (std::uint64_t pass = 1; pass <= 4; ++pass) method.take(pass);
+        const Image image = method.image();
+        ASSERT_EQ(image.radius.size(), pixel_count(hit_points_)) << name;
+        std::vector<double> radii(image.radius.size(), 0.0);
+        for (std::size_t i = 0; i < hit_points_.points.size(); ++i)
+            radii[hit_points_.points[i].pixel] = method.integrator(0).gather_state(i)->radius;
+        for (std::size_t i = 0; i < radii.size(); ++i)
+            EXPECT_FLOAT_EQ(image.radius[i], static_cast<float>(radii[i])) << name << ' ' << i;
+        EXPECT_GT(*std::max_element(image.radius.begin(), image.radius.end()), 0.0f) << name;
+    }
+    PassLoop path = loop_of({.integrator = "path"}, scene_, hit_points_);
+    path.take(1);
+    EXPECT_TRUE(path.image().radius.empty());
 }
 
 TEST_F(Loop, BeginsAtAnyPassOfAMethodWhosePassesAreIndependent) {

@@ -7,6 +7,7 @@
 #include "tests/statistical/rendering.h"
 #include "tests/statistical/scenes.h"
 #include "tests/statistical/significance.h"
+#include "tests/support/radius_rules.h"
 
 namespace photonlab::test {
 namespace {
@@ -62,35 +63,8 @@ double unit_radiance(const Scene& scene) {
     return static_cast<double>(reflectance) / pi * scene.total_power / area;
 }
 
-/// A method of the harness. A new radius rule is among them by being in the list of schedules.
-struct NamedMethod {
-    std::string name;
-    MethodSettings settings;
-};
-
 std::vector<NamedMethod> all_methods() {
-    std::vector<NamedMethod> methods;
-    for (const std::string integrator : {"ppm", "sppm"})
-        for (const auto& [schedule, name] : schedule_names) {
-            MethodSettings settings{.integrator = integrator, .schedule = schedule, .radius = disc_radius};
-            methods.push_back({integrator + " " + std::string(name), settings});
-            settings.kernel = Kernel::Epanechnikov;
-            settings.positions = Positions::Box;
-            methods.push_back({integrator + " " + std::string(name) + ", other kernel and positions", settings});
-        }
-    MethodSettings tested{.schedule = ScheduleName::ChiSquare, .radius = disc_radius};
-    for (const TestVariant variant : {TestVariant::LinearFit, TestVariant::Pooled}) {
-        tested.test_variant = variant;
-        methods.push_back({"ppm chi-square " + std::string(name_of(variant)), tested});
-    }
-    tested.start = StartRadius::Nearest;
-    for (const std::string integrator : {"ppm", "sppm"}) {
-        tested.integrator = integrator;
-        methods.push_back({integrator + " chi-square, k-th photon", tested});
-    }
-    MethodSettings estimated{.estimate_error = ErrorEstimation::On, .radius = disc_radius};
-    methods.push_back({"ppm with estimates", estimated});
-    return methods;
+    return methods_by_every_radius_rule({.radius = disc_radius});
 }
 
 /// Mean over the image after 1, 3 and 64 passes of many independent runs, each against the light at its own hit points.

@@ -6,7 +6,7 @@ import numpy
 
 from analysis.drawing import pictures
 from analysis.figures import strip
-from analysis.records import files, images, records
+from analysis.records import files, images, methods, records
 from support import synthetic
 from support.images import grey, layered, write_exr, write_runs
 from support.in_folder import InFolder
@@ -66,9 +66,9 @@ class Strip(InFolder):
 
     def test_one_method_of_each_kind_is_shown_unless_others_are_asked_for(self):
         found = records.read(self.make_results())
-        self.assertEqual(strip.shown_methods(found, [], False), ["PM, radius", "PPM, α = 0.5"])
-        self.assertEqual(strip.shown_methods(found, [0.9], False), ["PM, radius", "PPM, α = 0.9"])
-        self.assertEqual(strip.shown_methods(found, [], True), found.labels)
+        self.assertEqual(methods.shown_methods(found, [], False), ["PM, radius", "PPM, α = 0.5"])
+        self.assertEqual(methods.shown_methods(found, [0.9], False), ["PM, radius", "PPM, α = 0.9"])
+        self.assertEqual(methods.shown_methods(found, [], True), found.labels)
 
     def test_the_command_writes_both_files(self):
         self.make_results()
