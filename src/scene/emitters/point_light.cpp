@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "core/sampling.h"
 #include "scene/emitters/light_reader.h"
 #include "scene/mitsuba/transform.h"
 
@@ -33,10 +32,6 @@ PointLight PointLightDescription::placed(const ToUnitBox& to_unit_box) const {
                                "{} {}",
                                to_unit_box.unit_length, position.x, position.y, position.z));
     return {intensity / (to_unit_box.unit_length * to_unit_box.unit_length), there};
-}
-
-Ray PointLight::emit(const std::vector<Shape>&, const EmissionDraw& draw) const {
-    return {position, sample_unit_sphere(draw.u_direction)};
 }
 
 std::optional<DirectSample> PointLight::sample_direct(const std::vector<Shape>&, const Vector& receiver,

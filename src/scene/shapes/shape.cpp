@@ -46,10 +46,6 @@ std::vector<std::string_view> analytic_shape_kinds() {
     }(static_cast<const Analytic*>(nullptr));
 }
 
-SurfacePoint sample_area(const Shape& shape, const Imath::V2f& u, double u_triangle) {
-    return std::visit([&](const auto& kind) { return kind.sample_area(u, u_triangle); }, shape.geometry);
-}
-
 namespace {
 
 /// Kinds that can be sampled as seen from a point, and not by their area alone.
