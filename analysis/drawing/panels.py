@@ -7,6 +7,13 @@ from matplotlib import pyplot
 from analysis.drawing.style import FULL_WIDTH
 
 
+def filled(grid, items):
+    """Pairs of a panel of the grid and an item, in order; panels without an item are hidden."""
+    for axes in grid.flat[len(items):]:
+        axes.set_visible(False)
+    return zip(grid.flat, items)
+
+
 def panels_over_legend(rows, columns, handles, caption, panel_height=1.75):
     """A grid of panels with what all share below it: the legend, then the caption in small print. Laid out in inches,
     so that nothing overlaps however many entries there are. Returns the figure and its grid of axes."""

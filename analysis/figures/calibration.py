@@ -9,7 +9,7 @@ from matplotlib import lines
 
 from analysis.command import Command
 from analysis.drawing import style
-from analysis.drawing.panels import panels_over_legend
+from analysis.drawing.panels import filled, panels_over_legend
 from analysis.drawing.saving import save
 
 BOUNDS = {"within_50": 0.5, "within_90": 0.9}
@@ -33,10 +33,7 @@ def draw(results, rows):
     columns = min(3, len(scenes))
     figure, grid = panels_over_legend(-(-len(scenes) // columns), columns, handles,
                                       "Share of pixels whose true error lies within the bounds of 50% and 90% (dotted).")
-    for axes, scene in zip(grid.flat, [*scenes, *[None] * (grid.size - len(scenes))]):
-        if scene is None:
-            axes.set_visible(False)
-            continue
+    for axes, scene in filled(grid, scenes):
         for label in labels:
             own = rows[(rows["scene"] == scene) & (rows["method"] == label)]
             for column in BOUNDS:

@@ -11,7 +11,7 @@ from matplotlib import lines
 
 from analysis.command import Command, has
 from analysis.drawing import style
-from analysis.drawing.panels import panels_over_legend
+from analysis.drawing.panels import filled, panels_over_legend
 from analysis.drawing.saving import save
 from analysis.records import methods, tables
 from analysis.statistics import decomposition
@@ -75,10 +75,7 @@ def draw_sweep(rows):
     columns = 3
     figure, grid = panels_over_legend(-(-len(panels) // columns), columns, handles,
                                       "Gathered light at the last pass, without the reference's noise; 1.96 standard errors.")
-    for axes, panel in zip(grid.flat, [*panels, *[None] * (grid.size - len(panels))]):
-        if panel is None:
-            axes.set_visible(False)
-            continue
+    for axes, panel in filled(grid, panels):
         own = swept[(swept["scene"] == panel[0]) & (swept["region"] == panel[1])]
         for rule in rules:
             of_rule = own[own["rule"] == rule].assign(place=lambda r: r["swept"].astype(float)).sort_values("place")

@@ -312,7 +312,7 @@ void render(const RenderOptions& options) {
         make_run(options, {experiment, scene, hit_points, reference ? &*reference : nullptr, {}, {&prepared}});
     if (!options.csv.empty()) write_columns(columns_file(options.csv));
     if (std::binary_search(snapshots.begin(), snapshots.end(), finished.state.pass))
-        write_text_file(snapshot_file(options.output, options.passes), read_text_file(options.output));
+        write_text_file(snapshot_file(options.output, finished.state.pass), read_text_file(options.output));
 
     print_summary(finished.state, prepared.settings, scene, hit_points.points.size(), finished.errors);
     for (const std::string& reason : why_images_are_plain(scene, hit_points)) print_output("note        {}\n", reason);

@@ -106,6 +106,11 @@ inline bool is_blind(ScheduleName schedule) {
     return schedule == ScheduleName::KnausZwicker;
 }
 
+/// True when radii shrink where a test finds that photons do not lie evenly in the disc.
+inline bool tests_its_disc(ScheduleName schedule) {
+    return schedule == ScheduleName::ChiSquare || schedule == ScheduleName::FTest;
+}
+
 /// Factor on the squared radius after a pass in which `found` new photons joined `count` kept ones:
 /// rho = (N + alpha M) / (N + M), and 1 when N + M = 0.
 /// [Hachisuka et al. 2008, equation for the radius reduction]

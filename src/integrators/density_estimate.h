@@ -114,7 +114,7 @@ struct PointGather {
 };
 
 /// Everything within each hit point's own reach: what is found at hit points [range.begin, range.end), one of the
-/// blocks, in order. `order` is that of `points`; `reach_of(index)` is in the unit box.
+/// blocks, in order. `order` is that of `points`; `reach_of(index, point)` is in the unit box.
 template <typename Moments = NoMoments, typename ReachOf>
 std::vector<PointGather<Moments>> gather_within(const PhotonMap& map, const Scene& scene, const HitPointList& points,
                                                 const SearchOrder& order, BlockRange range,
@@ -131,7 +131,7 @@ std::vector<PointGather<Moments>> gather_within(const PhotonMap& map, const Scen
     in_list.reserve(count);
     for (std::size_t i = range.begin; i < range.end; ++i) {
         const HitPoint& point = points[i];
-        const GatherReach& reach = reaches.emplace_back(reach_of(i));
+        const GatherReach& reach = reaches.emplace_back(reach_of(i, point));
         in_list.push_back({point.position, point.normal, std::max(reach.radius, reach.bandwidth)});
         gathered.emplace_back(scene, point, settings.max_depth, reach);
     }
@@ -168,8 +168,14 @@ inline double chosen_radius(const std::optional<double>& chosen, double otherwis
 }
 
 /// Initial gather radius of a hit point, unit box: the setting, or so many footprints of the pixel there.
+inline double initial_radius(const MethodSettings& settings, const Scene& scene, const HitPoints& hit_points,
+                             std::size_t index) {
+    return chosen_radius(settings.radius, settings.footprints * hit_points.footprints[index], scene);
+}
+
+/// The same of one of the grid's.
 inline double initial_radius(const MethodSettings& settings, const IntegratorContext& context, std::size_t index) {
-    return chosen_radius(settings.radius, settings.footprints * context.hit_points.footprints[index], context.scene);
+    return initial_radius(settings, context.scene, context.hit_points, index);
 }
 
 }  // namespace photonlab

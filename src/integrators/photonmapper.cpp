@@ -109,15 +109,14 @@ private:
         std::vector<std::uint64_t> gathered(blocks, 0);
         parallel_for(blocks, context_.threads, [&](std::size_t block) {
             const BlockRange range = block_range(block, points.size(), hit_points_per_block);
-            const auto found =
-                settings_.mode == GatherMode::Radius
-                    ? gather_within(map, context_.scene, points, order_, range, settings_,
-                                    [&](std::size_t i) {
-                                        return GatherReach{
-                                            .radius = search.radii[i],
-                                            .area = search.areas.at(surface_end(points[i]), i, search.radii[i])};
-                                    })
-                    : gather_nearest(map, search, range);
+            const auto found = settings_.mode == GatherMode::Radius
+                                   ? gather_within(map, context_.scene, points, order_, range, settings_,
+                                                   [&](std::size_t i, const HitPoint& point) {
+                                                       return GatherReach{.radius = search.radii[i],
+                                                                          .area = search.areas.at(surface_end(point), i,
+                                                                                                  search.radii[i])};
+                                                   })
+                                   : gather_nearest(map, search, range);
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 const FluxSum& sum = found[i - range.begin].sum;
                 radiance_[i] += sum.flux() / (pi * search.radii[i] * search.radii[i]);

@@ -114,9 +114,9 @@ private:
         std::vector<std::uint64_t> gathered(blocks, 0);
         parallel_for(blocks, context_.threads, [&](std::size_t block) {
             const BlockRange range = block_range(block, statistics_.size(), hit_points_per_block);
-            const std::vector<PointGather<Moments>> found =
-                gather_within<Moments>(*pass.photons, context_.scene, pass.points.points, order_, range, settings_,
-                                       [&](std::size_t i) { return reach_of<Moments>(i); });
+            const std::vector<PointGather<Moments>> found = gather_within<Moments>(
+                *pass.photons, context_.scene, pass.points.points, order_, range, settings_,
+                [&](std::size_t i, const HitPoint& point) { return reach_of<Moments>(i, point); });
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 const PointGather<Moments>& at = found[i - range.begin];
                 update(i, at, pass);
@@ -127,9 +127,9 @@ private:
     }
 
     template <typename Moments>
-    GatherReach reach_of(std::size_t i) {
+    GatherReach reach_of(std::size_t i, const HitPoint& point) {
         GatherReach reach{.radius = std::sqrt(statistics_[i].squared_radius)};
-        reach.area = areas_.at(surface_end(context_.hit_points.points[i]), i, reach.radius);
+        reach.area = areas_.at(surface_end(point), i, reach.radius);
         if constexpr (Moments::has_curvature)
             reach.bandwidth =
                 std::sqrt(squared_curvature_bandwidth(settings_.laplacian_radius, initial_squared_radius(i), passes_));
@@ -188,18 +188,7 @@ IntegratorKind ppm_kind() {
             .label = "PPM",
             .paper = "Hachisuka, Ogaki and Jensen 2008; Knaus and Zwicker 2011",
             .needs = progressive_needs,
-            .settings = {"schedule",        "alpha",
-                         "kappa",           "smallest_radius",
-                         "largest_radius",  "laplacian_radius",
-                         "test_variant",    "start",
-                         "test_photons",    "test_shrink",
-                         "test_growth",     "estimate_error",
-                         "radius",          "footprints",
-                         "kernel",          "area",
-                         "area_lines",      "eps",
-                         "direct",          "direct_samples",
-                         "max_depth",       "branch_cutoff",
-                         "photons_per_pass"},
+            .settings = progressive_settings(),
             .make = make_integrator_of<ProgressivePhotonMapping>};
 }
 

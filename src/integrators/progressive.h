@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cmath>
+#include <string_view>
+#include <vector>
 
 #include "gather/adaptive_radius.h"
 #include "gather/radius_rule.h"
@@ -17,6 +19,24 @@ inline constexpr double smallest_squared_radius = PhotonMap::minimum_radius * Ph
 inline Needs progressive_needs(const MethodSettings& settings) {
     return {.photons = Needs::Photons::OfPass,
             .passes = is_blind(settings.schedule) ? Needs::Passes::Independent : Needs::Passes::Ordered};
+}
+
+/// The names of what both use, after those that only one has.
+inline std::vector<std::string_view> progressive_settings(std::vector<std::string_view> own = {}) {
+    for (const std::string_view name : {"schedule",        "alpha",
+                                        "kappa",           "smallest_radius",
+                                        "largest_radius",  "laplacian_radius",
+                                        "test_variant",    "start",
+                                        "test_photons",    "test_shrink",
+                                        "test_growth",     "estimate_error",
+                                        "radius",          "footprints",
+                                        "kernel",          "area",
+                                        "area_lines",      "eps",
+                                        "direct",          "direct_samples",
+                                        "max_depth",       "branch_cutoff",
+                                        "photons_per_pass"})
+        own.push_back(name);
+    return own;
 }
 
 inline RadiusRuleSettings radius_rule_settings(const MethodSettings& settings) {
@@ -40,8 +60,7 @@ inline double shrink_before(const RadiusRule& rule, std::uint64_t pass) {
 }
 
 inline bool starts_at_nearest(const MethodSettings& settings) {
-    return settings.start == StartRadius::Nearest &&
-           (settings.schedule == ScheduleName::ChiSquare || settings.schedule == ScheduleName::FTest);
+    return settings.start == StartRadius::Nearest && tests_its_disc(settings.schedule);
 }
 
 /// The squared distance of photon number `test_photons` from the point, or that of the largest radius where there are

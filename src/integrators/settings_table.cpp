@@ -124,7 +124,7 @@ bool in_mode_radius(const MethodSettings& settings) {
 }
 
 bool is_tested(const MethodSettings& settings) {
-    return settings.schedule == ScheduleName::ChiSquare || settings.schedule == ScheduleName::FTest;
+    return tests_its_disc(settings.schedule);
 }
 bool is_adaptive(const MethodSettings& settings) {
     return settings.schedule == ScheduleName::Adaptive;

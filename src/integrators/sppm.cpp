@@ -91,17 +91,18 @@ public:
 
 private:
     /// Unit box; before any shrinking.
-    double radius_at(const HitPoints& points, std::size_t i) const {
-        return chosen_radius(settings_.radius, settings_.footprints * static_cast<double>(points.footprints[i]),
-                             context_.scene);
+    double initial_radius_at(const HitPoints& points, std::size_t i) const {
+        return initial_radius(settings_, context_.scene, points, i);
+    }
+
+    /// Unit box; of the pass that comes.
+    double radius_at(const HitPoints& points, std::size_t i, std::uint32_t pixel) const {
+        return initial_radius_at(points, i) * std::sqrt(statistics_[pixel].squared_radius);
     }
 
     void set_radii(const HitPoints& points) {
         photonlab::set_radii(
-            radii_, points.points.size(),
-            [&](std::size_t i) {
-                return radius_at(points, i) * std::sqrt(statistics_[points.points[i].pixel].squared_radius);
-            },
+            radii_, points.points.size(), [&](std::size_t i) { return radius_at(points, i, points.points[i].pixel); },
             context_.scene.unit_length);
     }
 
@@ -116,18 +117,11 @@ private:
             const HitPoint point = pass.points.points[i];
             if (has_begun[point.pixel]) continue;
             has_begun[point.pixel] = true;
-            const double radius = radius_at(pass.points, i);
+            const double radius = initial_radius_at(pass.points, i);
             statistics_[point.pixel].squared_radius =
                 nearest_squared_radius(*pass.photons, point, settings_, context_) / (radius * radius);
         }
     }
-
-    /// What one hit point brings to its pixel.
-    struct Part {
-        ColorD estimate = ColorD(0.0);
-        std::uint64_t found = 0;
-        MomentsOfPass moments;  // where they are asked for
-    };
 
     template <typename Moments>
     void gather(const Pass& pass) {
@@ -141,41 +135,46 @@ private:
         parallel_for(block_count(points.size(), hit_points_per_block), context_.threads, [&](std::size_t block) {
             const BlockRange range = block_range(block, points.size(), hit_points_per_block);
             const auto gathered = gather_within<Moments>(
-                *pass.photons, context_.scene, points, order, range, settings_, [&](std::size_t i) {
-                    GatherReach reach = reach_of<Moments>(pass.points, i);
-                    reach.area = areas_.of_pass(surface_end(points[i]), i, pass.number, reach.radius);
-                    return reach;
-                });
+                *pass.photons, context_.scene, points, order, range, settings_,
+                [&](std::size_t i, const HitPoint& point) { return reach_of<Moments>(pass, i, point); });
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 const PointGather<Moments>& at = gathered[i - range.begin];
+                const HitPoint point = points[i];
                 const double paths = static_cast<double>(pass.paths_emitted);
-                const double radius = reach_of<Moments>(pass.points, i).radius;
-                const ColorD weight(points[i].weight);
+                const double radius = gather_radius_at(pass.points, i, point.pixel);
+                const ColorD weight(point.weight);
                 estimates[i] = weight * at.sum.flux() / (pi * radius * radius * paths);
                 found[i] = static_cast<std::uint32_t>(at.sum.count());
                 if constexpr (!Moments::are_none) {
-                    const double unit = radius_at(pass.points, i);
+                    const double unit = initial_radius_at(pass.points, i);
                     parts[i] = at.moments.of_pass(at.sum.factor() * weight, paths, unit * unit);
                 }
             }
         });
         for (std::size_t i = 0; i < points.size(); ++i) {
-            PassGather& pixel = of_pixels[points[i].pixel];
+            const std::uint32_t index = points[i].pixel;
+            PassGather& pixel = of_pixels[index];
             pixel.estimate += estimates[i];
             pixel.found += found[i];
             photons_gathered_ += found[i];
-            if constexpr (!Moments::are_none) moments[points[i].pixel] += parts[i];
+            if constexpr (!Moments::are_none) moments[index] += parts[i];
         }
         take_pixels(pass, of_pixels, moments);
     }
 
+    /// The same as what a gather can be asked for.
+    double gather_radius_at(const HitPoints& points, std::size_t i, std::uint32_t pixel) const {
+        return std::max(radius_at(points, i, pixel), PhotonMap::minimum_radius);
+    }
+
     template <typename Moments>
-    GatherReach reach_of(const HitPoints& points, std::size_t i) const {
-        const double unit = radius_at(points, i);
-        const double share = std::sqrt(statistics_[points.points[i].pixel].squared_radius);
-        GatherReach reach{.radius = std::max(unit * share, PhotonMap::minimum_radius)};
-        if constexpr (Moments::has_curvature)
+    GatherReach reach_of(const Pass& pass, std::size_t i, const HitPoint& point) const {
+        GatherReach reach{.radius = gather_radius_at(pass.points, i, point.pixel)};
+        reach.area = areas_.of_pass(surface_end(point), i, pass.number, reach.radius);
+        if constexpr (Moments::has_curvature) {
+            const double unit = initial_radius_at(pass.points, i);
             reach.bandwidth = std::sqrt(squared_curvature_bandwidth(settings_.laplacian_radius, unit * unit, passes_));
+        }
         return reach;
     }
 
@@ -221,19 +220,7 @@ IntegratorKind sppm_kind() {
                     needs.new_points = NewPoints{.positions = settings.positions, .branches = settings.branches};
                     return needs;
                 },
-            .settings = {"positions",       "branches",
-                         "schedule",        "alpha",
-                         "kappa",           "smallest_radius",
-                         "largest_radius",  "laplacian_radius",
-                         "test_variant",    "start",
-                         "test_photons",    "test_shrink",
-                         "test_growth",     "estimate_error",
-                         "radius",          "footprints",
-                         "kernel",          "area",
-                         "area_lines",      "eps",
-                         "direct",          "direct_samples",
-                         "max_depth",       "branch_cutoff",
-                         "photons_per_pass"},
+            .settings = progressive_settings({"positions", "branches"}),
             .make = make_integrator_of<StochasticProgressivePhotonMapping>};
 }
 

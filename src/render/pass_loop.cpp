@@ -51,7 +51,6 @@ PassLoop::PassLoop(const Scene& scene, const HitPoints& hit_points, const std::v
       photon_settings_(photons_of(settings.at(0), purposes.photons)),
       branch_cutoff_(settings[0].method.branch_cutoff),
       threads_(settings[0].threads),
-      seed_(settings[0].seed),
       positions_purpose_(purposes.positions) {
     for (const RunSettings& one : settings) {
         assert(settings.size() == 1 || can_run_together(settings[0], one));
@@ -111,9 +110,9 @@ void PassLoop::make_points(std::uint64_t pass) {
         if (!first.needs.new_points || !is_due(first, pass) || find_new_points(*first.needs.new_points)) continue;
         const NewPoints& kind = *first.needs.new_points;
         const StageTimes making = timed(Stage::Points, [&] {
-            new_points_.emplace_back(kind,
-                                     trace_new_hit_points(scene_, hit_points_.samples_per_pixel, kind,
-                                                          {seed_, positions_purpose_, pass}, threads_, branch_cutoff_));
+            new_points_.emplace_back(kind, trace_new_hit_points(scene_, hit_points_.samples_per_pixel, kind,
+                                                                {photon_settings_.seed, positions_purpose_, pass},
+                                                                threads_, branch_cutoff_));
         });
         for (Method& method : methods_)
             if (is_due(method, pass) && method.needs.new_points == kind) method.passes_alone += making;

@@ -127,7 +127,6 @@ private:
     const int threads_;
     std::vector<Method> methods_;
     PhotonSupply photons_;
-    const std::uint64_t seed_;
     const RandomPurpose positions_purpose_;
     std::vector<std::pair<NewPoints, HitPoints>> new_points_;  // of the pass: a set for each kind that methods want
 };

@@ -69,6 +69,14 @@ struct CameraSample {
     Imath::V2f on_lens = Imath::V2f(0.0f);
 };
 
+/// In cell `cell` of the grid x grid cells of a pixel, at `within` it, each coordinate from 0 to 1.
+CameraSample in_cell(const Camera& camera, std::uint32_t pixel, int grid, int cell,
+                     const Imath::V2d& within = Imath::V2d(0.5)) {
+    const int x = static_cast<int>(pixel) % camera.width;
+    const int y = static_cast<int>(pixel) / camera.width;
+    return {x + (cell % grid + within.x) / grid, y + (cell / grid + within.y) / grid};
+}
+
 /// The same samples in every pass: the grid of each pixel, with a lens point for each cell. Those are the points of the
 /// additive recurrence of the plastic number, moved by random numbers of the pixel, so that neighbours differ.
 /// [Roberts 2018, "The unreasonable effectiveness of quasirandom sequences"]
@@ -81,13 +89,13 @@ public:
     /// Calls `take(sample, nullptr)`: these paths draw no numbers.
     template <typename Take>
     void of_pixel(std::uint32_t pixel, const Take& take) const {
-        const int x = static_cast<int>(pixel) % camera_.width;
-        const int y = static_cast<int>(pixel) / camera_.width;
         Imath::V2f moved(0.0f);
         if (camera_.has_lens()) moved = RandomStream(0, RandomPurpose::CameraPositions, 0, pixel).next_2d();
-        for (int cell = 0; cell < grid_ * grid_; ++cell)
-            take(CameraSample{x + (cell % grid_ + 0.5) / grid_, y + (cell / grid_ + 0.5) / grid_, lens(moved, cell)},
-                 static_cast<RandomStream*>(nullptr));
+        for (int cell = 0; cell < grid_ * grid_; ++cell) {
+            CameraSample sample = in_cell(camera_, pixel, grid_, cell);
+            sample.on_lens = lens(moved, cell);
+            take(sample, static_cast<RandomStream*>(nullptr));
+        }
     }
 
 private:
@@ -116,24 +124,15 @@ public:
     /// Calls `take(sample, &stream)` with the stream that the rest of the path draws from.
     template <typename Take>
     void of_pixel(std::uint32_t pixel, const Take& take) const {
-        const int x = static_cast<int>(pixel) % camera_.width;
-        const int y = static_cast<int>(pixel) / camera_.width;
         RandomStream random(pass_.seed, pass_.purpose, pass_.pass, pixel);
-        if (positions_ == Positions::Grid) {
-            const int cell = cell_of(pixel);
-            CameraSample sample{x + (cell % positions_grid_ + 0.5) / positions_grid_,
-                                y + (cell / positions_grid_ + 0.5) / positions_grid_};
+        const auto take_with_lens = [&](CameraSample sample) {
             if (camera_.has_lens()) sample.on_lens = random.next_2d();
             take(sample, &random);
-            return;
-        }
-        for (int cell = 0; cell < paths_grid_ * paths_grid_; ++cell) {
-            const Imath::V2f within = random.next_2d();
-            CameraSample sample{x + (cell % paths_grid_ + static_cast<double>(within.x)) / paths_grid_,
-                                y + (cell / paths_grid_ + static_cast<double>(within.y)) / paths_grid_};
-            if (camera_.has_lens()) sample.on_lens = random.next_2d();
-            take(sample, &random);
-        }
+        };
+        if (positions_ == Positions::Grid)
+            return take_with_lens(in_cell(camera_, pixel, positions_grid_, cell_of(pixel)));
+        for (int cell = 0; cell < paths_grid_ * paths_grid_; ++cell)
+            take_with_lens(in_cell(camera_, pixel, paths_grid_, cell, Imath::V2d(random.next_2d())));
     }
 
 private:

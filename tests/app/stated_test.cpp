@@ -227,7 +227,7 @@ TEST_F(Stated, PluginsAreThoseThatScenesMayHave) {
     Names without_place;  // "area (in a shape)"
     for (const std::string& emitter : emitters) without_place.insert(split(emitter, " (").at(0));
     EXPECT_EQ(stated("emitters", ";"), without_place);
-    EXPECT_EQ(stated("sensors", ";"), known("<sensor type=\"no\"/>"));
+    EXPECT_EQ(stated("sensors", "."), known("<sensor type=\"no\"/>"));
 }
 
 TEST_F(Stated, ScenesAndTheirReferencesAreThoseInTheRepository) {

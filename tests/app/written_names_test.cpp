@@ -65,6 +65,21 @@ TEST_F(WrittenNames, PicturesAndTablesEndAsTheyAreWritten) {
     for (const std::string name : {"a.exr", "b.PNG", "b.Csv", "a-pass-1.exr"}) EXPECT_TRUE(exists(name)) << name;
 }
 
+// A render that ends before its last pass: the image of the pass it ended with is a snapshot of that pass, if it was
+// asked for, and none has the name of a pass that was not made.
+TEST_F(WrittenNames, SnapshotsOfARenderThatStopsAreOfThePassesThatItMade) {
+    EXPECT_EQ(run({"render", in("scene.xml"), "-o", in("a.exr"), "--passes", "64", "--photons", "2000",
+                   "--estimate-error", "on", "--stop-at", "1e6", "--snapshots", "1,2,3,64"}),
+              0)
+        << said_;
+    expect_said("2 passes of ppm");  // the first with a noise that is known
+    for (const std::string name : {"a.exr", "a-pass-1.exr", "a-pass-2.exr"}) {
+        EXPECT_TRUE(exists(name)) << name;
+        expect_said("wrote       " + in(name));
+    }
+    for (const std::string name : {"a-pass-3.exr", "a-pass-64.exr"}) EXPECT_FALSE(exists(name)) << name;
+}
+
 TEST_F(WrittenNames, FoldersAreNotCalledAsFilesAre) {
     for (const std::string name : {"a.exr", "a.PNG", "a.csv"}) {
         EXPECT_EQ(run({"reference", in("scene.xml"), "-o", in(name), "--samples", "1"}), 2);

@@ -29,7 +29,7 @@ MethodSettings progressive(ScheduleName schedule, double alpha) {
 
 FluxSum gather_at_first(const Scene& scene, const HitPoints& hit_points, const PhotonPass& pass, double radius) {
     return gather_within(PhotonMap(pass.photons), scene, hit_points.points, SearchOrder(hit_points.points), {0, 1}, {},
-                         [&](std::size_t) { return GatherReach{radius}; })[0]
+                         [&](std::size_t, const HitPoint&) { return GatherReach{radius}; })[0]
         .sum;
 }
 

@@ -26,7 +26,8 @@ Curvature curvature_of_pass(const Scene& scene, const HitPoints& points, const M
                             double bandwidth, std::uint64_t seed) {
     const PhotonPass pass = trace_photons(scene, photon_settings(method, seed), 1, 1);
     const auto found = gather_within<PhotonMoments<true, false>>(
-        PhotonMap(pass.photons), scene, points.points, SearchOrder(points.points), {0, 1}, method, [&](std::size_t) {
+        PhotonMap(pass.photons), scene, points.points, SearchOrder(points.points), {0, 1}, method,
+        [&](std::size_t, const HitPoint&) {
             return GatherReach{radius / scene.unit_length, bandwidth / scene.unit_length};
         });
     return found[0].moments.of_pass(found[0].sum.factor(), static_cast<double>(pass.paths_emitted), 1.0).curvature;

@@ -142,9 +142,10 @@ std::vector<double> estimates_on_floor(const Scene& scene, const AreaMode area, 
                                .normal = CoarseDirection(Vector(0, 1, 0)),
                                .edges = 1});
         }
-        const FluxSum sum = gather_within(PhotonMap(photons), scene, hit_points.points, SearchOrder(hit_points.points),
-                                          {0, 1}, {.kernel = kernel}, [&](std::size_t) { return reach; })[0]
-                                .sum;
+        const FluxSum sum =
+            gather_within(PhotonMap(photons), scene, hit_points.points, SearchOrder(hit_points.points), {0, 1},
+                          {.kernel = kernel}, [&](std::size_t, const HitPoint&) { return reach; })[0]
+                .sum;
         const double density = paths / (4.0 * floor_end * floor_end);
         estimates.push_back(mean_channel(sum.flux()) * pi / 0.5 / (pi * floor_radius * floor_radius * density));
     }
