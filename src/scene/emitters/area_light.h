@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "core/sampling.h"
 #include "scene/emitters/light_kind.h"
 
 namespace photonlab {
@@ -29,5 +30,11 @@ struct AreaLight {
     static void check(const ColorD& radiance, const std::string& place) { require_light(radiance, place, "radiance"); }
 };
 static_assert(LightKind<AreaLight>);
+
+inline Emission AreaLight::emit(const std::vector<Shape>& shapes, const EmissionDraw& draw) const {
+    const SurfacePoint point = sample_area(shapes[shape], draw.u_position, draw.u_triangle);
+    const Vector direction = make_frame(point.normal).to_world(sample_cosine_hemisphere(draw.u_direction));
+    return {{offset_from_surface(point.position, point.normal, direction), direction}};
+}
 
 }  // namespace photonlab

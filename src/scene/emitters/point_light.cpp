@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "core/sampling.h"
 #include "scene/emitters/light_reader.h"
 #include "scene/mitsuba/transform.h"
 
@@ -27,10 +26,6 @@ void PointLightDescription::check() const {
 PointLight PointLightDescription::placed(const SceneExtent& extent) const {
     const double unit_length = extent.to_unit_box.unit_length;
     return {intensity / (unit_length * unit_length), place_point(position, extent, place)};
-}
-
-Emission PointLight::emit(const std::vector<Shape>&, const EmissionDraw& draw) const {
-    return {{position, sample_unit_sphere(draw.u_direction)}};
 }
 
 std::optional<DirectSample> PointLight::sample_direct(const std::vector<Shape>&, const Vector& receiver,

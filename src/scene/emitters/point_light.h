@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include "core/sampling.h"
 #include "scene/emitters/light_kind.h"
 
 namespace photonlab {
@@ -34,5 +35,9 @@ struct PointLight {
     std::optional<DirectSample> sample_direct(const std::vector<Shape>&, const Vector& receiver, const Imath::V2f&,
                                               double) const;
 };
+
+inline Emission PointLight::emit(const std::vector<Shape>&, const EmissionDraw& draw) const {
+    return {{position, sample_unit_sphere(draw.u_direction)}};
+}
 
 }  // namespace photonlab

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "core/sampling.h"
 #include "scene/mitsuba/transform.h"
 #include "scene/shapes/shape_reader.h"
 
@@ -45,28 +44,6 @@ Extent Disk::extent() const {
     return {centre, reach};
 }
 
-Roots Disk::roots(const VectorD& origin, const VectorD& direction) const {
-    const VectorD normal(frame.normal);
-    const double slope = direction.dot(normal);
-    if (slope == 0.0) return {};
-    const double t = (VectorD(centre) - origin).dot(normal) / slope;
-    const VectorD offset = origin + direction * t - VectorD(centre);
-    return offset.length2() <= static_cast<double>(radius) * radius ? Roots{1, {t, 0.0}} : Roots{};
-}
-
-void Disk::complete(Hit& hit, const Ray& ray, float, float) const {
-    const VectorD normal(frame.normal);
-    const VectorD middle(centre);
-    const VectorD position = VectorD(ray.origin) + VectorD(ray.direction) * hit.distance;
-    hit.position = Vector(position - normal * (position - middle).dot(normal));
-    hit.geometric_normal = frame.normal;
-    hit.shading_normal = frame.normal;
-    if (!texture_axes) return;
-    const double x = (position - middle).dot((*texture_axes)[0]) / radius;
-    const double y = (position - middle).dot((*texture_axes)[1]) / radius;
-    hit.texture_coordinate = Imath::V2f(Imath::V2d(std::hypot(x, y), turn_to(x, y)));
-}
-
 SurfaceTangents Disk::tangents(const Hit& hit) const {
     const TextureAxes& axes = texture_axes.value_or(scene_axes);
     const VectorD from_centre = VectorD(hit.position) - VectorD(centre);
@@ -97,11 +74,6 @@ std::optional<Vector> Disk::whole_within(const Vector& position, double distance
     const VectorD offset = VectorD(position) - VectorD(centre);
     if (std::abs(offset.dot(VectorD(frame.normal))) > 1e-6 || offset.length() + distance > radius) return std::nullopt;
     return frame.normal;
-}
-
-SurfacePoint Disk::sample_area(const Imath::V2f& u, double) const {
-    const Imath::V2f point = sample_unit_disc(u) * radius;
-    return {centre + frame.tangent * point.x + frame.bitangent * point.y, frame.normal};
 }
 
 }  // namespace photonlab

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include "core/sampling.h"
 #include "scene/shapes/surface.h"
 
 namespace photonlab {
@@ -42,5 +43,32 @@ struct Disk {
     std::optional<Vector> whole_within(const Vector& position, double distance) const;
     SurfacePoint sample_area(const Imath::V2f& u, double) const;
 };
+
+inline Roots Disk::roots(const VectorD& origin, const VectorD& direction) const {
+    const VectorD normal(frame.normal);
+    const double slope = direction.dot(normal);
+    if (slope == 0.0) return {};
+    const double t = (VectorD(centre) - origin).dot(normal) / slope;
+    const VectorD offset = origin + direction * t - VectorD(centre);
+    return offset.length2() <= static_cast<double>(radius) * radius ? Roots{1, {t, 0.0}} : Roots{};
+}
+
+inline void Disk::complete(Hit& hit, const Ray& ray, float, float) const {
+    const VectorD normal(frame.normal);
+    const VectorD middle(centre);
+    const VectorD position = VectorD(ray.origin) + VectorD(ray.direction) * hit.distance;
+    hit.position = Vector(position - normal * (position - middle).dot(normal));
+    hit.geometric_normal = frame.normal;
+    hit.shading_normal = frame.normal;
+    if (!texture_axes) return;
+    const double x = (position - middle).dot((*texture_axes)[0]) / radius;
+    const double y = (position - middle).dot((*texture_axes)[1]) / radius;
+    hit.texture_coordinate = Imath::V2f(Imath::V2d(std::hypot(x, y), turn_to(x, y)));
+}
+
+inline SurfacePoint Disk::sample_area(const Imath::V2f& u, double) const {
+    const Imath::V2f point = sample_unit_disc(u) * radius;
+    return {centre + frame.tangent * point.x + frame.bitangent * point.y, frame.normal};
+}
 
 }  // namespace photonlab

@@ -8,7 +8,6 @@
 #include <tuple>
 
 #include "core/error.h"
-#include "core/sampling.h"
 
 namespace photonlab {
 
@@ -85,34 +84,6 @@ TriangleMesh MeshDescription::placed(const ToUnitBox& to_unit_box, const ShapeUs
     return mesh;
 }
 
-/// Completes a hit on a triangle. The position comes from the vertices, which is more accurate than origin + t
-/// direction.
-void TriangleMesh::complete(Hit& hit, const Ray& ray, float u, float v) const {
-    const auto& triangle = triangles[hit.primitive];
-    const float w = 1.0f - u - v;
-    const Vector& a = positions[triangle.x];
-    const Vector& b = positions[triangle.y];
-    const Vector& c = positions[triangle.z];
-    hit.position = a * w + b * u + c * v;
-    hit.geometric_normal = geometric_normals[hit.primitive];
-    // A triangle without area has no normal of its own; facing the ray is as good as any.
-    if (hit.geometric_normal == Vector(0.0f)) hit.geometric_normal = -ray.direction;
-    hit.shading_normal = hit.geometric_normal;
-    if (!normals.empty()) {
-        const VectorD interpolated =
-            VectorD(normals[triangle.x]) * w + VectorD(normals[triangle.y]) * u + VectorD(normals[triangle.z]) * v;
-        if (interpolated.length2() > 0.0) {
-            hit.shading_normal = Vector(interpolated.normalized());
-            if (hit.shading_normal.dot(hit.geometric_normal) < 0.0f) hit.shading_normal = -hit.shading_normal;
-        }
-    }
-    if (!texture_coordinates.empty())
-        hit.texture_coordinate = texture_coordinates[triangle.x] * w + texture_coordinates[triangle.y] * u +
-                                 texture_coordinates[triangle.z] * v;
-    else
-        hit.texture_coordinate = Imath::V2f(u, v);
-}
-
 /// Texture coordinates are linear over a triangle, so its edges give the two; where they do not tell u from v, any two
 /// in its plane.
 SurfaceTangents TriangleMesh::tangents(const Hit& hit) const {
@@ -129,17 +100,6 @@ SurfaceTangents TriangleMesh::tangents(const Hit& hit) const {
         return {VectorD(frame.tangent), VectorD(frame.bitangent)};
     }
     return {(first * uv_second.y - second * uv_first.y) / area, (second * uv_first.x - first * uv_second.x) / area};
-}
-
-SurfacePoint TriangleMesh::sample_area(const Imath::V2f& u, double u_triangle) const {
-    const auto found = std::upper_bound(triangle_cdf.begin(), triangle_cdf.end() - 1, u_triangle);
-    const auto index = static_cast<std::size_t>(found - triangle_cdf.begin());
-    const auto& triangle = triangles[index];
-    const Vector& a = positions[triangle.x];
-    const Vector& b = positions[triangle.y];
-    const Vector& c = positions[triangle.z];
-    const Imath::V2f weights = sample_triangle(u);
-    return {a * (1.0f - weights.x - weights.y) + b * weights.x + c * weights.y, geometric_normals[index]};
 }
 
 }  // namespace photonlab

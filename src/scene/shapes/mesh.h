@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include "core/sampling.h"
 #include "scene/shapes/surface.h"
 
 namespace photonlab {
@@ -37,5 +38,44 @@ struct TriangleMesh {
     SurfaceTangents tangents(const Hit& hit) const;
     SurfacePoint sample_area(const Imath::V2f& u, double u_triangle) const;
 };
+
+/// Completes a hit on a triangle. The position comes from the vertices, which is more accurate than origin + t
+/// direction.
+inline void TriangleMesh::complete(Hit& hit, const Ray& ray, float u, float v) const {
+    const auto& triangle = triangles[hit.primitive];
+    const float w = 1.0f - u - v;
+    const Vector& a = positions[triangle.x];
+    const Vector& b = positions[triangle.y];
+    const Vector& c = positions[triangle.z];
+    hit.position = a * w + b * u + c * v;
+    hit.geometric_normal = geometric_normals[hit.primitive];
+    // A triangle without area has no normal of its own; facing the ray is as good as any.
+    if (hit.geometric_normal == Vector(0.0f)) hit.geometric_normal = -ray.direction;
+    hit.shading_normal = hit.geometric_normal;
+    if (!normals.empty()) {
+        const VectorD interpolated =
+            VectorD(normals[triangle.x]) * w + VectorD(normals[triangle.y]) * u + VectorD(normals[triangle.z]) * v;
+        if (interpolated.length2() > 0.0) {
+            hit.shading_normal = Vector(interpolated.normalized());
+            if (hit.shading_normal.dot(hit.geometric_normal) < 0.0f) hit.shading_normal = -hit.shading_normal;
+        }
+    }
+    if (!texture_coordinates.empty())
+        hit.texture_coordinate = texture_coordinates[triangle.x] * w + texture_coordinates[triangle.y] * u +
+                                 texture_coordinates[triangle.z] * v;
+    else
+        hit.texture_coordinate = Imath::V2f(u, v);
+}
+
+inline SurfacePoint TriangleMesh::sample_area(const Imath::V2f& u, double u_triangle) const {
+    const auto found = std::upper_bound(triangle_cdf.begin(), triangle_cdf.end() - 1, u_triangle);
+    const auto index = static_cast<std::size_t>(found - triangle_cdf.begin());
+    const auto& triangle = triangles[index];
+    const Vector& a = positions[triangle.x];
+    const Vector& b = positions[triangle.y];
+    const Vector& c = positions[triangle.z];
+    const Imath::V2f weights = sample_triangle(u);
+    return {a * (1.0f - weights.x - weights.y) + b * weights.x + c * weights.y, geometric_normals[index]};
+}
 
 }  // namespace photonlab

@@ -50,10 +50,6 @@ SurfaceTangents tangents_at(const Shape& shape, const Hit& hit) {
     return std::visit([&](const auto& geometry) { return geometry.tangents(hit); }, shape.geometry);
 }
 
-SurfacePoint sample_area(const Shape& shape, const Imath::V2f& u, double u_triangle) {
-    return std::visit([&](const auto& kind) { return kind.sample_area(u, u_triangle); }, shape.geometry);
-}
-
 namespace {
 
 /// Kinds that can be sampled as seen from a point, and not by their area alone.

@@ -53,7 +53,9 @@ inline void complete(Hit& hit, const Shape& shape, const Ray& ray, float u, floa
 SurfaceTangents tangents_at(const Shape& shape, const Hit& hit);
 
 /// A point uniform in area.
-SurfacePoint sample_area(const Shape& shape, const Imath::V2f& u, double u_triangle);
+inline SurfacePoint sample_area(const Shape& shape, const Imath::V2f& u, double u_triangle) {
+    return std::visit([&](const auto& kind) { return kind.sample_area(u, u_triangle); }, shape.geometry);
+}
 
 /// A point as seen from `receiver`; empty when the point drawn does not face it.
 std::optional<SeenPoint> sample_seen(const Shape& shape, const Vector& receiver, const Imath::V2f& u,

@@ -35,35 +35,6 @@ Sphere SphereDescription::placed(const ToUnitBox& to_unit_box, const ShapeUse& u
             .texture_axes = use.has_texture ? std::optional(texture_axes) : std::nullopt};
 }
 
-/// The quadratic in the form that does not cancel: the root of larger magnitude by addition, the other by division.
-Roots Sphere::roots(const VectorD& origin, const VectorD& direction) const {
-    const VectorD offset = origin - VectorD(centre);
-    const double a = direction.length2();
-    const double half_b = offset.dot(direction);
-    // The discriminant from the closest point's distance, which stays accurate for far origins.
-    const VectorD closest = offset - direction * (half_b / a);
-    const double discriminant = a * (static_cast<double>(radius) * radius - closest.length2());
-    if (!(discriminant >= 0.0)) return {};
-    const double c = (offset.length() - radius) * (offset.length() + radius);
-    const double q = -(half_b + std::copysign(std::sqrt(discriminant), half_b));
-    double near = q / a;
-    double far = q != 0.0 ? c / q : near;
-    if (near > far) std::swap(near, far);
-    return {2, {near, far}};
-}
-
-void Sphere::complete(Hit& hit, const Ray& ray, float, float) const {
-    const VectorD middle(centre);
-    const VectorD outward = (VectorD(ray.origin) + VectorD(ray.direction) * hit.distance - middle).normalized();
-    hit.position = Vector(middle + outward * radius);
-    hit.geometric_normal = Vector(outward) * orientation;
-    hit.shading_normal = hit.geometric_normal;
-    if (!texture_axes) return;
-    const auto& [x, y, z] = *texture_axes;
-    const double from_pole = std::acos(std::clamp(outward.dot(z), -1.0, 1.0)) / pi;
-    hit.texture_coordinate = Imath::V2f(Imath::V2d(turn_to(outward.dot(x), outward.dot(y)), from_pole));
-}
-
 SurfaceTangents Sphere::tangents(const Hit& hit) const {
     const auto& [x, y, z] = texture_axes.value_or(scene_axes);
     const VectorD from_centre = VectorD(hit.position) - VectorD(centre);
@@ -85,11 +56,6 @@ std::vector<SurfacePoint> Sphere::probes() const {
                 points.push_back({centre + outward * radius, outward});
             }
     return points;
-}
-
-SurfacePoint Sphere::sample_area(const Imath::V2f& u, double) const {
-    const Vector outward = sample_unit_sphere(u);
-    return {centre + outward * radius, outward * orientation};
 }
 
 double Sphere::distance_to(const Vector& position) const {

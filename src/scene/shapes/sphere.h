@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include "core/sampling.h"
 #include "scene/shapes/surface.h"
 
 namespace photonlab {
@@ -47,5 +48,39 @@ struct Sphere {
     std::optional<SeenPoint> sample_seen(const Vector& receiver, const Imath::V2f& u) const;
     std::optional<double> seen_density(const Vector& receiver) const;
 };
+
+/// The quadratic in the form that does not cancel: the root of larger magnitude by addition, the other by division.
+inline Roots Sphere::roots(const VectorD& origin, const VectorD& direction) const {
+    const VectorD offset = origin - VectorD(centre);
+    const double a = direction.length2();
+    const double half_b = offset.dot(direction);
+    // The discriminant from the closest point's distance, which stays accurate for far origins.
+    const VectorD closest = offset - direction * (half_b / a);
+    const double discriminant = a * (static_cast<double>(radius) * radius - closest.length2());
+    if (!(discriminant >= 0.0)) return {};
+    const double c = (offset.length() - radius) * (offset.length() + radius);
+    const double q = -(half_b + std::copysign(std::sqrt(discriminant), half_b));
+    double near = q / a;
+    double far = q != 0.0 ? c / q : near;
+    if (near > far) std::swap(near, far);
+    return {2, {near, far}};
+}
+
+inline void Sphere::complete(Hit& hit, const Ray& ray, float, float) const {
+    const VectorD middle(centre);
+    const VectorD outward = (VectorD(ray.origin) + VectorD(ray.direction) * hit.distance - middle).normalized();
+    hit.position = Vector(middle + outward * radius);
+    hit.geometric_normal = Vector(outward) * orientation;
+    hit.shading_normal = hit.geometric_normal;
+    if (!texture_axes) return;
+    const auto& [x, y, z] = *texture_axes;
+    const double from_pole = std::acos(std::clamp(outward.dot(z), -1.0, 1.0)) / pi;
+    hit.texture_coordinate = Imath::V2f(Imath::V2d(turn_to(outward.dot(x), outward.dot(y)), from_pole));
+}
+
+inline SurfacePoint Sphere::sample_area(const Imath::V2f& u, double) const {
+    const Vector outward = sample_unit_sphere(u);
+    return {centre + outward * radius, outward * orientation};
+}
 
 }  // namespace photonlab

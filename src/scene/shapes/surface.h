@@ -102,7 +102,8 @@ struct SurfaceTangents {
 /// A kind of shape that is met as it is, and not as triangles. read() gives the description of a <shape>, in the world;
 /// check(place) throws InputError for what cannot be rendered, and placed() takes it to the unit box. complete() fills
 /// a hit of the ray from its distance, and tangents() are there; probes() are points all over it, away from where
-/// others may rest on it.
+/// others may rest on it. What every ray and every photon asks, roots(), complete() and sample_area(), is inline: calls
+/// cost more than they do.
 ///
 /// A kind that knows where it is whole has distance_to(position), and whole_within(position, distance): the normal at a
 /// point on it around which its area within any distance up to that one is a flat disc's, all of it seen from there,
