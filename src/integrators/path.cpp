@@ -132,7 +132,7 @@ public:
     MethodLayers image(const PhotonsOfAllPasses*) override {
         const double share = 1.0 / static_cast<double>(passes_);
         if (passes_ > 0) return has_new_points_ ? layers_of_pixels(share) : layers_of(sums_, share, true);
-        std::vector<PathSample> once(sums_.size());
+        std::vector<PathSample> once(context_.hit_points.points.size());
         add_paths(0, context_.hit_points, once);
         return layers_of(once, 1.0, false);
     }

@@ -183,6 +183,21 @@ TEST(Invariance, LookingBeforeTheFirstPassShowsEmissionAndDirectLightAndChangesN
     }
 }
 
+// Where a pixel has several hit points, since glass divides what it sees.
+TEST(Invariance, PathsShowTheSameBeforeTheirFirstPassWhereverTheyWillBegin) {
+    SceneDescription description = room(resolution, resolution);
+    description.materials.push_back({.id = "glass", .bsdf = Dielectric{}});
+    const std::size_t glass = description.materials.size() - 1;
+    description.shapes.push_back(sphere(VectorD(-0.3, 0.0, 0.0), 0.4, false, glass));
+    const Scene scene = build_scene(description);
+    const HitPoints hit_points = trace_hit_points(scene, 1, 1);
+    ASSERT_GT(hit_points.points.size(), pixel_count(hit_points) + 20);
+    const MethodSettings grid{.integrator = "path"};
+    MethodSettings box = grid;
+    box.positions = Positions::Box;
+    expect_same_bits(loop_of(grid, scene, hit_points).image(), loop_of(box, scene, hit_points).image(), 1.0, "box");
+}
+
 TEST(Invariance, DarknessIsBlackAndFinite) {
     SceneDescription no_light = room(resolution, resolution);
     for (ShapeDescription& shape : no_light.shapes) shape.radiance.reset();
