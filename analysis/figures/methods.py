@@ -18,6 +18,7 @@ from analysis.statistics import decomposition
 
 NAME = "methods.csv"
 SWEPT = "footprints"
+NAMED = ["integrator", "schedule", "test_variant"]    # settings that tell rules apart
 COLUMNS = ["scene", "region", "method", "pass", "mse", "mse_error", "relative", "relative_error"]
 
 
@@ -36,9 +37,7 @@ def last_rows(results):
 
 def rule_of(row, columns):
     """A method's label without its radius."""
-    kind = dict(methods.kind_of(row, columns))
-    return ", ".join(columns.setting_text(name, value) for name, value in kind.items()
-                     if name in ("integrator", "schedule", "test_variant", "positions"))
+    return ", ".join(columns.setting_text(name, row[name]) for name in NAMED if name in row and row[name])
 
 
 def relative_rows(rows):

@@ -36,8 +36,15 @@ struct Axis {
 };
 using Axes = std::map<std::string, Axis, std::less<>>;
 
+/// A scene as it stands in the file: one of the experiment for each number of sample positions.
+struct WrittenScene {
+    SceneEntry entry;
+    std::vector<int> samples;  ///< of methods that have none of their own
+};
+
 struct Method {
     std::optional<std::string> name;
+    std::optional<std::vector<int>> samples;  ///< sample positions a pixel
     Axes axes;
     PassPlan plan;
     std::string place;
@@ -340,11 +347,7 @@ private:
                     in_folder ? std::filesystem::absolute(scene.file).parent_path() : scene.file;
                 scene.name = file_safe(in_folder ? named.filename().string() : named.stem().string());
             }
-            for (const int count : samples) {
-                scene.samples_per_pixel = count;
-                if (samples.size() > 1) scene.swept = fmt::format("_samples_per_pixel-{}", count);
-                experiment_.scenes.push_back(scene);
-            }
+            scenes_.push_back({std::move(scene), std::move(samples)});
         }
     }
 
@@ -356,7 +359,7 @@ private:
         std::vector<Method> methods;
         for (const toml::node& node : *tables) {
             const toml::table& table = *node.as_table();
-            std::vector<std::string_view> known{"name", "passes"};
+            std::vector<std::string_view> known{"name", "passes", "samples_per_pixel"};
             for (const SettingField& field : setting_fields()) known.push_back(field.name);
             require_known(table, known);
             Method method;
@@ -364,6 +367,7 @@ private:
             if (const toml::node* name = table.get("name")) method.name = file_safe(string(*name, "name"));
             const toml::node* own_passes = table.get("passes");
             method.plan = plan_of(root, own_passes ? passes(*own_passes) : written_passes_);
+            if (const toml::node* own = table.get("samples_per_pixel")) method.samples = samples_per_pixel(*own);
             for (const SettingField& field : setting_fields())
                 if (const toml::node* setting = table.get(field.name))
                     method.axes[std::string(field.name)] = axis(*setting, field.name);
@@ -371,10 +375,27 @@ private:
                 throw InputError(method.place, "method: integrator is missing");
             methods.push_back(std::move(method));
         }
-        for (std::size_t scene = 0; scene < experiment_.scenes.size(); ++scene)
-            for (const Method& method : methods) add_runs(scene, method, 0, {}, "");
+        for (const WrittenScene& scene : scenes_) add_runs_of(scene, methods);
         for (const auto& [name, default_axis] : defaults_)
             if (!used_defaults_.contains(name)) throw InputError(default_axis.place, name + " is used by no method");
+    }
+
+    /// One scene of the experiment for each number of sample positions that some method has there.
+    void add_runs_of(const WrittenScene& scene, const std::vector<Method>& methods) {
+        const auto samples_of = [&](const Method& method) { return method.samples.value_or(scene.samples); };
+        std::set<int> counts;
+        for (const Method& method : methods)
+            for (const int count : samples_of(method)) counts.insert(count);
+        for (const int count : counts) {
+            experiment_.scenes.push_back(scene.entry);
+            experiment_.scenes.back().samples_per_pixel = count;
+            for (const Method& method : methods) {
+                const std::vector<int> samples = samples_of(method);
+                const std::string swept = samples.size() > 1 ? fmt::format("_samples_per_pixel-{}", count) : "";
+                for (const int own : samples)
+                    if (own == count) add_runs(experiment_.scenes.size() - 1, method, 0, {}, swept);
+            }
+        }
     }
 
     /// Adds the runs of `method` that share the settings before field `index`: a walk through the product of its axes.
@@ -415,8 +436,7 @@ private:
         const std::string name = method.name.value_or(settings.values.integrator);
         for (const std::uint64_t seed : seeds_) {
             ExperimentRun run;
-            const SceneEntry& entry = experiment_.scenes[scene];
-            run.point = file_safe(fmt::format("{}_{}{}{}", entry.name, name, entry.swept, swept));
+            run.point = file_safe(fmt::format("{}_{}{}", experiment_.scenes[scene].name, name, swept));
             run.name = fmt::format("{}_seed-{}", run.point, seed);
             run.scene = scene;
             run.method = name;
@@ -458,6 +478,7 @@ private:
     std::optional<SmokeLimits> smoke_;
     std::optional<Resolution> resolution_;
     std::vector<int> samples_per_pixel_{1};
+    std::vector<WrittenScene> scenes_;
     std::uint64_t records_ = 0;
     std::uint64_t written_passes_ = 1;
     std::uint64_t most_written_passes_ = 1;

@@ -49,7 +49,6 @@ struct SceneEntry {
     std::optional<std::filesystem::path> reference;  ///< folder of halves, or an EXR; without one no errors are taken
     std::optional<Resolution> resolution;            ///< in place of the scene file's
     int samples_per_pixel = 1;                       ///< a perfect square
-    std::string swept;                               ///< of that, in the names of runs: where several were given
     std::vector<Region> regions;
     std::vector<Probe> probes;
 };

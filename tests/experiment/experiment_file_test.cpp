@@ -78,6 +78,9 @@ TEST_F(ExperimentFile, SamplesPerPixelCanBeSwept) {
     EXPECT_EQ(experiment.scenes[1].name, "box");
     EXPECT_EQ(experiment.scenes[1].samples_per_pixel, 16);
     EXPECT_EQ(experiment.scenes[2].samples_per_pixel, 4);
+    EXPECT_EQ(names(read(least + ppm + "samples_per_pixel = [16, 4]\n[[method]]\nintegrator = \"sppm\"\n")),
+              (std::vector<std::string>{"box_sppm_seed-1", "box_ppm_samples_per_pixel-4_seed-1",
+                                        "box_ppm_samples_per_pixel-16_seed-1"}));
     EXPECT_EQ(refusal("passes = 8\nscenes = [\"lamp.xml\"]\nsamples_per_pixel = [1, 3]\n" + ppm),
               ":3: samples_per_pixel: expected a perfect square from 1 to 1048576, got 3");
 }

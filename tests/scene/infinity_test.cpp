@@ -73,7 +73,9 @@ TEST_P(EnvironmentDensity, IsThatOfItsSamplesAndCoversWhatShines) {
         200'000, 64);
     for (int i = 0; i < 2000; ++i) {
         const VectorD direction = VectorD(sample_unit_sphere(random.next_2d())).normalized();
-        if (map.radiance(direction).x > 0.0) EXPECT_GT(map.density(direction), 0.0);
+        if (map.radiance(direction).x > 0.0) {
+            EXPECT_GT(map.density(direction), 0.0);
+        }
     }
 }
 
@@ -329,13 +331,15 @@ TEST_F(SurroundingsInFiles, CountAsTexturesDo) {
     std::string bytes_read;
     const XmlElement scene = read_scene_xml(folder_ / "scene.xml", {}, bytes_read);
     std::map<std::string, std::shared_ptr<const ColorImage>> images;
+    std::map<std::array<double, 3>, std::shared_ptr<const RoughCoat>> rough_coats;
     for (const std::size_t room : {8u, 7u}) {
         std::size_t pixels = (std::size_t{1} << 27) - room;
         const SceneSource source{.resolve = [](const XmlElement& element) -> const XmlElement& { return element; },
                                  .bytes_read = bytes_read,
                                  .image_pixels = pixels,
                                  .note = [](const std::string&) {},
-                                 .images = images};
+                                 .images = images,
+                                 .rough_coats = rough_coats};
         if (room == 8) {
             EXPECT_NO_THROW(read_scene_light(scene.children.at(0), source));
             EXPECT_EQ(pixels, std::size_t{1} << 27);
