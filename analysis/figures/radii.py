@@ -1,8 +1,8 @@
 """Draws which radius each method came to, pixel by pixel: a panel a kind of method, in one logarithmic scale of colours a scene.
 
 Where radii adapt to the light, dark pixels are those where it changes: edges, shadows, caustics. A rule that is fooled shows
-it here, by small radii where nothing is. Of each kind of method the first is shown (--all: every one), with its lowest seed
-and its last snapshot. Pixels that gather nothing are white.
+it here, by small radii where nothing is. Of each kind of method one is shown (--all: every one), from the initial radius that
+most have, with its lowest seed and its last snapshot. Pixels that gather nothing are white.
 """
 
 import textwrap
@@ -28,10 +28,23 @@ def radius_of(file):
     return numpy.where(radius[:, :, 0] > 0, radius[:, :, 0], numpy.nan)
 
 
+def shown_methods(scene, all_methods):
+    """All; or of each kind the first that begins with the radius that most methods begin with, or with another."""
+    if all_methods:
+        return scene.labels
+    first_rows = scene.rows.drop_duplicates("method").set_index("method")
+    common = first_rows["footprints"].value_counts().idxmax()
+    ordered = sorted(scene.labels, key=lambda label: first_rows.loc[label, "footprints"] != common)
+    of_kind = {}
+    for label in ordered:
+        of_kind.setdefault(methods.kind_of(first_rows.loc[label], scene.columns), label)
+    return [label for label in scene.labels if label in of_kind.values()]
+
+
 def collect(scene, all_methods):
     """{label: radii} of the methods that have them."""
     found = {}
-    for label in methods.shown_methods(scene, [], all_methods):
+    for label in shown_methods(scene, all_methods):
         run = scene.run(methods.run_of(scene, label, None)["run"].iloc[0])
         radius = radius_of(run.snapshots[max(run.snapshots)]) if run and run.snapshots else None
         if radius is not None and numpy.isfinite(radius).any():
@@ -57,8 +70,8 @@ def draw(title, found):
     scale = scale_of(found.values())
     for axes, (label, radius) in filled(grid, list(found.items())):
         mapped = axes.imshow(radius, cmap=COLOURS, norm=scale)
-        axes.set(xticks=[], yticks=[])
-        axes.set_title("\n".join(textwrap.wrap(label, 26)), fontsize=8)
+        axes.set_axis_off()
+        axes.set_title("\n".join(textwrap.wrap(label, 22)), fontsize=7)
     bar = figure.colorbar(mapped, ax=grid, extend="both", fraction=0.04)
     bar.set_label("radius (scene units)", fontsize=8)
     figure.suptitle(title, fontsize=9.5)

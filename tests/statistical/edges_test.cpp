@@ -127,7 +127,7 @@ std::vector<double> estimates_on_floor(const Scene& scene, const AreaMode area, 
     const HitPoint point = hit_points.points[0];
     const double radius = floor_radius / scene.unit_length;
     GatherAreas areas(scene, {.mode = area, .kernel = kernel, .lines = 4000}, 1);
-    const GatherReach reach{.radius = radius, .area = areas.at(surface_end(point), 0, radius)};
+    const GatherReach reach{.radius = radius, .area = areas.at(surface_end(scene, point), 0, radius)};
     std::vector<double> estimates;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         RandomStream random(seed, RandomPurpose::Test, 1, 0);
