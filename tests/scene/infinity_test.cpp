@@ -59,7 +59,8 @@ INSTANTIATE_TEST_SUITE_P(Both, EnvironmentDensity, ::testing::Values(Rows::Centr
 
 TEST_P(EnvironmentDensity, IsThatOfItsSamplesAndCoversWhatShines) {
     ColorImage image = black(16, 9);
-    for (int i = 0; i < 16 * 9; ++i) image.pixels[static_cast<std::size_t>(i)] = Color(0.1f + 0.01f * ((i * 7) % 13));
+    for (int i = 0; i < 16 * 9; ++i)
+        image.pixels[static_cast<std::size_t>(i)] = Color(0.1f + 0.01f * static_cast<float>((i * 7) % 13));
     image.pixels[2 * 16 + 15] = Color(20.0f);
     image.pixels[0] = Color(0.0f);
     const EnvironmentImage map(image, GetParam());

@@ -102,7 +102,9 @@ TEST(Microfacets, AreDrawnWithTheirDensityWhereTheyAreNearlySmoothAndSeenAtGrazi
             constexpr int samples = 20'000;
             for (int i = 0; i < samples; ++i) {
                 const Vector normal = facets.sample(view, random.next_2d());
-                if (slopes == FacetSlopes::Beckmann && degrees < 80.0) ASSERT_GT(normal.z, 0.99f);
+                if (slopes == FacetSlopes::Beckmann && degrees < 80.0) {
+                    ASSERT_GT(normal.z, 0.99f);
+                }
                 squared += std::min(1.0, (static_cast<double>(normal.y) * normal.y) / (normal.z * normal.z * 1e-6));
                 weight += facets.weight(view, mirrored(view, normal), normal);
             }
@@ -110,7 +112,9 @@ TEST(Microfacets, AreDrawnWithTheirDensityWhereTheyAreNearlySmoothAndSeenAtGrazi
             // is exp(-s^2) / sqrt(pi), Ggx's 1 / (2 (1 + s^2)^(3/2)); four standard errors are below 0.01.
             const double expected = slopes == FacetSlopes::Beckmann ? 0.3711 : 0.4672;
             EXPECT_NEAR(squared / samples, expected, 0.01) << static_cast<int>(slopes) << " " << degrees;
-            if (degrees < 80.0) EXPECT_NEAR(weight / samples, 1.0, 1e-3);
+            if (degrees < 80.0) {
+                EXPECT_NEAR(weight / samples, 1.0, 1e-3);
+            }
         }
 }
 

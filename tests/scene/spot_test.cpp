@@ -98,7 +98,7 @@ TEST(Spots, AreRefusedWithATextureThatIsNoLight) {
         ColorImage image{2, 2, std::vector<Color>(4, Color(0.5f))};
         image.pixels[3] = Color(0.5f, value, 0.5f);
         description.texture = std::make_shared<const Texture>(
-            Bitmap{.image = std::make_shared<const ColorImage>(image), .file = "a.exr"});
+            Bitmap{.image = std::make_shared<const ColorImage>(image), .to_uv = Matrix(), .file = "a.exr"});
         return description;
     };
     EXPECT_GT(scene_of(textured(1.0f)).emitters.at(0).power.x, 0.0);
