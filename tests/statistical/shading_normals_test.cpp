@@ -21,23 +21,27 @@ void lean_normals(SceneDescription& scene, double angle) {
     }
 }
 
-// With light from straight above at height h the shaded floor reflects rho / pi I cos(lean) / h^2: photons land with
-// the density of the true floor and are weighted by the ratio of cosines. Over the disc that ratio is cos(lean) +
-// sin(lean) x / h, whose second term averages to nothing.
-TEST(ShadingNormals, GatheredDirectLightIsThatOfTheShadingNormal) {
-    constexpr double height = 2.0;
-    constexpr double radius = 0.4;
-    constexpr double lean = 0.6;
+/// A floor seen at (0, 0, 0) below a point light at that height.
+constexpr double light_height = 2.0;
+SceneDescription floor_below_light(MeshDescription floor) {
     SceneDescription description;
     description.materials = {diffuse(Color(0.6f))};
-    description.shapes = {shape(parallelogram(VectorD(-5, 0, -5), VectorD(0, 0, 10), VectorD(10, 0, 0)), 0)};
-    lean_normals(description, lean);
-    description.lights = {point_light(VectorD(0.0, height, 0.0), ColorD(1.0))};
+    description.shapes = {shape(std::move(floor), 0)};
+    description.lights = {point_light(VectorD(0.0, light_height, 0.0), ColorD(1.0))};
     description.camera = look_at(VectorD(1.0, 2.0, 0.5), VectorD(0.0));
-    const Scene scene = build_scene(description);
+    return description;
+}
 
+MeshDescription ten_by_ten() {
+    return parallelogram(VectorD(-5, 0, -5), VectorD(0, 0, 10), VectorD(10, 0, 0));
+}
+
+/// Its direct light, by shadow rays and by photons, where the normal at the origin leans by `lean`.
+void expect_light_of_leaning_normal(const SceneDescription& description, double lean) {
+    constexpr double radius = 0.4;
+    const Scene scene = build_scene(description);
     EXPECT_NEAR(mean_of(render(scene, {.photons_per_pass = 1}, {}).image, direct_layer).x,
-                0.6 / pi * std::cos(lean) / (height * height), 1e-6);
+                0.6 / pi * std::cos(lean) / (light_height * light_height), 1e-6);
     std::vector<double> radiance;
     for (std::uint64_t seed = 1; seed <= 32; ++seed)
         radiance.push_back(
@@ -47,9 +51,19 @@ TEST(ShadingNormals, GatheredDirectLightIsThatOfTheShadingNormal) {
                         .image,
                     gathered_layer)
                 .x);
-    const double q = std::hypot(height, radius);
+    const double q = std::hypot(light_height, radius);
     ClaimFamily claims;
-    claims.mean_is("photons", radiance, 0.6 / pi * std::cos(lean) * 2.0 / (q * (q + height)), 0.01);
+    claims.mean_is("photons", radiance, 0.6 / pi * std::cos(lean) * 2.0 / (q * (q + light_height)), 0.01);
+}
+
+// With light from straight above at height h the shaded floor reflects rho / pi I cos(lean) / h^2: photons land with
+// the density of the true floor and are weighted by the ratio of cosines. Over the disc that ratio is cos(lean) +
+// sin(lean) x / h, whose second term averages to nothing.
+TEST(ShadingNormals, GatheredDirectLightIsThatOfTheShadingNormal) {
+    constexpr double lean = 0.6;
+    SceneDescription description = floor_below_light(ten_by_ten());
+    lean_normals(description, lean);
+    expect_light_of_leaning_normal(description, lean);
 }
 
 // Many reflections between walls whose normals all lean. The irradiance varies over the cube's half width 1: with a
@@ -95,31 +109,10 @@ MeshDescription with_texture_coordinates(MeshDescription mesh) {
 // of each other: photons count by the normal of the point that gathers, and neighbouring squares, 70 degrees apart, do
 // not refuse each other's.
 TEST(ShadingNormals, ThatATextureTurnsWithinTheRadiusAreThoseOfThePoint) {
-    constexpr double height = 2.0;
-    constexpr double radius = 0.4;
     const double lean = 35.0 * pi / 180.0;
-    SceneDescription description;
-    description.materials = {diffuse(Color(0.6f))};
+    SceneDescription description = floor_below_light(with_texture_coordinates(ten_by_ten()));
     description.materials[0].normals = leaning_squares(lean);
-    description.shapes = {
-        shape(with_texture_coordinates(parallelogram(VectorD(-5, 0, -5), VectorD(0, 0, 10), VectorD(10, 0, 0))), 0)};
-    description.lights = {point_light(VectorD(0.0, height, 0.0), ColorD(1.0))};
-    description.camera = look_at(VectorD(1.0, 2.0, 0.5), VectorD(0.0));
-    const Scene scene = build_scene(description);
-    EXPECT_NEAR(mean_of(render(scene, {.photons_per_pass = 1}, {}).image, direct_layer).x,
-                0.6 / pi * std::cos(lean) / (height * height), 1e-6);
-    std::vector<double> radiance;
-    for (std::uint64_t seed = 1; seed <= 32; ++seed)
-        radiance.push_back(
-            mean_of(render(scene,
-                           {.alpha = 1.0, .radius = radius, .direct = DirectMode::Photons, .photons_per_pass = 60'000},
-                           {.seed = seed})
-                        .image,
-                    gathered_layer)
-                .x);
-    const double q = std::hypot(height, radius);
-    ClaimFamily claims;
-    claims.mean_is("photons", radiance, 0.6 / pi * std::cos(lean) * 2.0 / (q * (q + height)), 0.01);
+    expect_light_of_leaning_normal(description, lean);
 }
 
 // The cube of many reflections, with such squares on all of its walls.
