@@ -328,6 +328,11 @@ std::optional<Surface> passed_straight(const Scene& scene, const Hit& hit, const
                    .from_back = from_back};
 }
 
+std::optional<Surface> orient_to_gather(const Scene& scene, const Hit& hit, const Vector& outgoing) {
+    const Material& material = scene.materials[scene.shapes[hit.shape].material];
+    return orient_by(scene, hit, outgoing, gather_normal(material, hit.shading_normal, hit.geometric_normal));
+}
+
 Ray Camera::ray(double x, double y, const Imath::V2f& on_lens) const {
     const VectorD through = forward + right * (x / width - 0.5) + down * (y / height - 0.5);
     if (!has_lens()) return {position, Vector(through.normalized())};

@@ -123,16 +123,17 @@ inline std::optional<Surface> orient_by(const Scene& scene, const Hit& hit, cons
     const float shading = shading_normal.dot(outgoing);
     if (!(geometric * shading > 0.0f)) return passed_straight(scene, hit, outgoing);
     if (from_back && !material.two_sided && !is_seen_from_behind(material)) return std::nullopt;
-    const Bsdf bsdf = bsdf_at(material, hit.texture_coordinate, from_back);
-    if (is_black(bsdf)) return std::nullopt;
+    std::optional<Surface> surface(std::in_place);
+    put_bsdf_at(surface->bsdf, material, hit.texture_coordinate, from_back);
+    if (is_black(surface->bsdf)) return std::nullopt;
     const float side = from_back ? -1.0f : 1.0f;
-    return Surface{.bsdf = bsdf,
-                   .material = material_index,
-                   .texture_coordinate = hit.texture_coordinate,
-                   .frame = make_frame(shading_normal * side),
-                   .geometric_normal = hit.geometric_normal * side,
-                   .position = hit.position,
-                   .from_back = from_back};
+    surface->material = material_index;
+    surface->texture_coordinate = hit.texture_coordinate;
+    surface->frame = make_frame(shading_normal * side);
+    surface->geometric_normal = hit.geometric_normal * side;
+    surface->position = hit.position;
+    surface->from_back = from_back;
+    return surface;
 }
 
 /// Turns the hit to the side of `outgoing` (unit, away from the surface). Empty when nothing can be reflected there:
@@ -142,8 +143,8 @@ inline std::optional<Surface> orient(const Scene& scene, const Hit& hit, const V
     const Material& material = scene.materials[scene.shapes[hit.shape].material];
     const bool from_back = hit.geometric_normal.dot(outgoing) < 0.0f;
     const std::optional<NormalTexture>& normals = from_back ? material.normals_behind : material.normals;
-    if (!normals) return orient_by(scene, hit, outgoing, hit.shading_normal);
-    return orient_by(scene, hit, outgoing, turned_normal(scene.shapes[hit.shape], hit, *normals));
+    return orient_by(scene, hit, outgoing,
+                     normals ? turned_normal(scene.shapes[hit.shape], hit, *normals) : hit.shading_normal);
 }
 
 /// The normal by which photons are kept and accepted, and by whose cosine their power is kept: the shading normal, but
@@ -154,10 +155,7 @@ inline const Vector& gather_normal(const Material& material, const Vector& shadi
 }
 
 /// orient() as photons are kept: with gather_normal().
-inline std::optional<Surface> orient_to_gather(const Scene& scene, const Hit& hit, const Vector& outgoing) {
-    const Material& material = scene.materials[scene.shapes[hit.shape].material];
-    return orient_by(scene, hit, outgoing, gather_normal(material, hit.shading_normal, hit.geometric_normal));
-}
+std::optional<Surface> orient_to_gather(const Scene& scene, const Hit& hit, const Vector& outgoing);
 
 /// True when both normals see `direction` on the same side; a path must not continue in any other direction.
 inline bool sides_agree(const Surface& surface, const Vector& direction) {

@@ -55,12 +55,18 @@ struct Material {
 /// Throws InputError for what cannot be rendered.
 void require_valid(const Material& material);
 
+/// std::visit among all kinds, as a call of its own so that what calls it stays small.
+template <typename Visitor>
+[[gnu::noinline]] auto visit_any_bsdf(const Visitor& visitor, const Bsdf& bsdf) {
+    return std::visit(visitor, bsdf);
+}
+
 /// std::visit, with Lambert's law first: of as many kinds as these the standard library makes a table of functions,
 /// none of which is inlined, and most surfaces are diffuse.
 template <typename Visitor>
-decltype(auto) visit_bsdf(const Visitor& visitor, const Bsdf& bsdf) {
+auto visit_bsdf(const Visitor& visitor, const Bsdf& bsdf) {
     if (const auto* diffuse = std::get_if<Diffuse>(&bsdf)) return visitor(*diffuse);
-    return std::visit(visitor, bsdf);
+    return visit_any_bsdf(visitor, bsdf);
 }
 
 /// f(outgoing, incoming) without the cosine, 1/sr; 0 where a direction is on a side from which nothing comes, and for
@@ -179,22 +185,30 @@ inline bool is_black(const Bsdf& bsdf) {
     return visit_bsdf([](const auto& b) { return b.is_black(); }, bsdf);
 }
 
-/// The BSDF at one point, seen from one side: textures looked up, an interface turned over when seen from its back, and
-/// the material that is there.
+/// Puts the BSDF at one point, seen from one side, into `there`: textures looked up, an interface turned over when seen
+/// from its back, and the material that is there. In place, since to copy a variant is to ask which kind it is.
+inline void put_bsdf_at(Bsdf& there, const Material& material, const Imath::V2f& texture_coordinate, bool from_back) {
+    const bool has_back = from_back && material.back;
+    const Material& seen = has_back ? *material.back : material;
+    const bool from_behind = from_back && !has_back;
+    const auto put = [&]<typename B>(const B& b) {
+        if constexpr (Composite<B>)
+            there = b.at(texture_coordinate, from_behind && !seen.two_sided);
+        else if constexpr (Transmissive<B>)
+            there = from_behind ? b.turned_over() : b;
+        else
+            there.emplace<B>(b);
+    };
+    if (seen.textures.empty()) return visit_bsdf(put, seen.bsdf);
+    Bsdf looked_up = seen.bsdf;
+    for (const TexturedColor& color : seen.textures) color.put(looked_up, color_at(*color.texture, texture_coordinate));
+    visit_bsdf(put, looked_up);
+}
+
 inline Bsdf bsdf_at(const Material& material, const Imath::V2f& texture_coordinate, bool from_back) {
-    if (from_back && material.back) return bsdf_at(*material.back, texture_coordinate, false);
-    Bsdf bsdf = material.bsdf;
-    for (const TexturedColor& color : material.textures) color.put(bsdf, color_at(*color.texture, texture_coordinate));
-    return visit_bsdf(
-        [&]<typename B>(const B& b) -> Bsdf {
-            if constexpr (Composite<B>)
-                return b.at(texture_coordinate, from_back && !material.two_sided);
-            else if constexpr (Transmissive<B>)
-                return from_back ? b.turned_over() : b;
-            else
-                return b;
-        },
-        bsdf);
+    Bsdf bsdf;
+    put_bsdf_at(bsdf, material, texture_coordinate, from_back);
+    return bsdf;
 }
 
 /// bsdf_at() of what another material is made of: black from behind where it is black there.
