@@ -12,7 +12,7 @@ namespace photonlab {
 
 namespace {
 
-constexpr int schema = 1;
+constexpr int columns_schema = 1;
 
 using Kind = Column::Kind;
 using Type = Column::Type;
@@ -124,7 +124,7 @@ std::vector<Column> columns_of(const SettingField& field) {
 std::vector<Column> columns_before_settings() {
     return {
         {"schema", Kind::Identity, Type::Integer, "", "schema", "version of this table",
-         [](const Record&) { return number(schema); }},
+         [](const Record&) { return number(columns_schema); }},
         {"experiment", Kind::Identity, Type::Text, "", "experiment", "name of the experiment",
          [](const Record& r) { return r.identity.experiment; }},
         {"run", Kind::Identity, Type::Text, "", "run", "name of the run: scene, method, what is swept, seed",
@@ -336,7 +336,7 @@ std::string columns_json() {
                        {"error", column.is_error},
                        {"meaning", column.meaning}});
     }
-    return with_checksum({{"schema", schema}, {"columns", all}});
+    return with_checksum({{"schema", columns_schema}, {"columns", all}});
 }
 
 void write_columns(const std::filesystem::path& file) {

@@ -17,7 +17,7 @@ const std::string probes_header =
 
 namespace {
 
-constexpr int schema = 1;
+constexpr int merged_schema = 1;
 constexpr const char* file_name = "merged.json";
 
 /// A table that is merged.
@@ -85,7 +85,7 @@ void write_merged_files(const std::filesystem::path& results, const MergedFiles&
     for (const auto& [name, stamps] : merged.files)
         std::transform(stamps.begin(), stamps.end(), std::back_inserter(files[name]), stamp_json);
     write_text_file(results / file_name,
-                    with_checksum({{"schema", schema}, {"experiment", merged.experiment}, {"files", files}}));
+                    with_checksum({{"schema", merged_schema}, {"experiment", merged.experiment}, {"files", files}}));
 }
 
 /// Replaces the tables that are not what they should be; removes one that was merged before and is empty now.
@@ -149,7 +149,7 @@ std::string describe_left_out(const MergedRecords& merged) {
 std::optional<MergedFiles> read_merged_files(const std::filesystem::path& results) {
     const std::optional<std::string> text = read_if_there(results / file_name);
     const std::optional<Json> json = text ? checked_json(*text) : std::nullopt;
-    if (!json || json->value("schema", Json()) != schema) return std::nullopt;
+    if (!json || json->value("schema", Json()) != merged_schema) return std::nullopt;
     MergedFiles merged;
     try {
         merged.experiment = json->at("experiment").get<std::string>();

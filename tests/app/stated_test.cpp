@@ -28,7 +28,7 @@
 namespace photonlab {
 namespace {
 
-using Names = std::set<std::string>;
+using NameSet = std::set<std::string>;
 using Row = std::vector<std::string>;
 
 const std::filesystem::path source = PHOTONLAB_SOURCE_DIR;
@@ -87,8 +87,8 @@ std::string written(double number) {
     return fmt::format("{:g}e{}", number / std::pow(10.0, exponent), exponent);
 }
 
-Names folders_in(const std::filesystem::path& folder) {
-    Names names;
+NameSet folders_in(const std::filesystem::path& folder) {
+    NameSet names;
     for (const auto& entry : std::filesystem::directory_iterator(folder))
         if (entry.is_directory()) names.insert(entry.path().filename().string());
     return names;
@@ -119,9 +119,9 @@ protected:
 };
 
 TEST_F(Stated, CommandsAreThoseOfTheProgram) {
-    Names in_manual;
+    NameSet in_manual;
     for (const Row& row : table(manual_, "command")) in_manual.insert(split(quoted(row.at(0)).at(0), " ").at(1));
-    Names in_help;
+    NameSet in_help;
     bool is_in_list = false;
     for (const std::string& line : lines_of(help_of({}))) {
         if (is_in_list && line.rfind("  ", 0) != 0) break;
@@ -196,7 +196,7 @@ TEST_F(Stated, HelpShowsTheDefaultsThatCommandsUse) {
 }
 
 /// Of "known here: a, b, c" in a message.
-Names known_in(const std::string& message) {
+NameSet known_in(const std::string& message) {
     const std::string begin = "nown here: ";
     const std::size_t at = message.find(begin);
     if (at == std::string::npos) return {};
@@ -206,11 +206,11 @@ Names known_in(const std::string& message) {
 }
 
 TEST_F(Stated, PluginsAreThoseThatScenesMayHave) {
-    std::map<std::string, Names> stated;  // what is quoted before the first semicolon
+    std::map<std::string, NameSet> stated;  // what is quoted before the first semicolon
     for (const Row& row : table(manual_, "kind")) {
         const std::string first = split(row.at(1), ";").at(0);
         const std::vector<std::string> names = quoted(first);
-        stated[row.at(0)] = Names(names.begin(), names.end());
+        stated[row.at(0)] = NameSet(names.begin(), names.end());
     }
     const auto known = [&](const std::string& element) {
         return known_in(refusal_of("<scene version=\"3.0.0\">" + element + "</scene>"));
@@ -219,17 +219,17 @@ TEST_F(Stated, PluginsAreThoseThatScenesMayHave) {
     EXPECT_EQ(stated["materials"], known("<bsdf type=\"no\" id=\"a\"/>"));
     EXPECT_EQ(stated["textures"],
               known("<bsdf type=\"diffuse\" id=\"a\"><texture name=\"reflectance\" type=\"no\"/></bsdf>"));
-    Names emitters = known("<emitter type=\"no\"/>");
-    const Names of_shapes = known("<shape type=\"sphere\"><emitter type=\"no\"/></shape>");
+    NameSet emitters = known("<emitter type=\"no\"/>");
+    const NameSet of_shapes = known("<shape type=\"sphere\"><emitter type=\"no\"/></shape>");
     emitters.insert(of_shapes.begin(), of_shapes.end());
-    Names without_place;  // "area (in a shape)"
+    NameSet without_place;  // "area (in a shape)"
     for (const std::string& emitter : emitters) without_place.insert(split(emitter, " (").at(0));
     EXPECT_EQ(stated["emitters"], without_place);
     EXPECT_EQ(stated["sensor, film"], known("<sensor type=\"no\"/>"));
 }
 
 TEST_F(Stated, ScenesAndTheirReferencesAreThoseInTheRepository) {
-    Names scenes;
+    NameSet scenes;
     for (const Row& row : table(manual_, "scene")) {
         const std::string name = quoted(row.at(0)).at(0);
         scenes.insert(name);
@@ -246,10 +246,10 @@ TEST_F(Stated, ScenesAndTheirReferencesAreThoseInTheRepository) {
 
 TEST_F(Stated, ExperimentsAreThoseInTheRepository) {
     const std::string page = read_text_file(source / "docs/experiments.md");
-    Names stated{"demo", "gallery"};  // without a question of their own
+    NameSet stated{"demo", "gallery"};  // without a question of their own
     for (const Row& row : table(page, "experiment"))
         for (const std::string& name : quoted(row.at(0))) stated.insert(name);
-    Names files;
+    NameSet files;
     for (const auto& entry : std::filesystem::directory_iterator(source / "experiments"))
         if (entry.path().extension() == ".toml") files.insert(entry.path().stem().string());
     EXPECT_EQ(stated, files);
@@ -261,7 +261,7 @@ TEST_F(Stated, RoomsAreThoseOfTheSources) {
     ASSERT_NE(begin, std::string::npos);
     std::vector<std::string> rooms = quoted(manual_.substr(begin, manual_.find(". `tests/`", begin) - begin));
     rooms.erase(rooms.begin());
-    EXPECT_EQ(Names(rooms.begin(), rooms.end()), folders_in(source / "src"));
+    EXPECT_EQ(NameSet(rooms.begin(), rooms.end()), folders_in(source / "src"));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace photonlab {
 namespace {
 
-constexpr double mebibyte = 1024.0 * 1024.0;
+constexpr double bytes_in_mebibyte = 1024.0 * 1024.0;
 
 class ControlGroup : public ::testing::Test {
 protected:
@@ -43,7 +43,8 @@ protected:
     }
     std::string found() {
         const auto left = memory_left_by_control_groups(folder_ / "");
-        return left ? left->group + " leaves " + std::to_string(left->bytes / mebibyte).substr(0, 6) : "no limit";
+        return left ? left->group + " leaves " + std::to_string(left->bytes / bytes_in_mebibyte).substr(0, 6)
+                    : "no limit";
     }
 
     const ScratchFolder folder_;

@@ -10,13 +10,10 @@
 #include <set>
 
 #include "tests/support/chi_square.h"
+#include "tests/support/test_stream.h"
 
 namespace photonlab {
 namespace {
-
-RandomStream test_stream(std::uint64_t index = 0) {
-    return RandomStream(7, RandomPurpose::Test, 1, index);
-}
 
 TEST(RandomStream, IsPhilox4x32With10Rounds) {
     // The answers that Random123 publishes (kat_vectors): counter and key of zeros, of ones, and of digits of pi.

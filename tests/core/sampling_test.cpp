@@ -10,13 +10,10 @@
 
 #include "core/random.h"
 #include "tests/support/chi_square.h"
+#include "tests/support/test_stream.h"
 
 namespace photonlab {
 namespace {
-
-RandomStream test_stream(std::uint64_t index = 0) {
-    return RandomStream(7, RandomPurpose::Test, 1, index);
-}
 
 double azimuth(const Vector& direction) {
     const double angle = std::atan2(direction.y, direction.x);

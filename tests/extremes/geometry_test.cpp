@@ -45,7 +45,7 @@ struct BothWays {
     ColorD photons;
 };
 
-BothWays radiance_of(const SceneDescription& description, double radius, std::uint64_t photons = 4000) {
+BothWays radiance_both_ways(const SceneDescription& description, double radius, std::uint64_t photons = 4000) {
     const Scene scene = build_scene(description);
     const HitPoints hit_points = trace_hit_points(scene, 1, 1);
     EXPECT_EQ(hit_points.points.size(), 1u);
@@ -59,18 +59,18 @@ void expect_same(const ColorD& actual, const ColorD& expected, double tolerance,
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(actual[c] / expected[c], 1.0, tolerance) << what << ", channel " << c;
 }
 
-constexpr double gather_radius = 0.1;
+constexpr double foot_radius = 0.1;
 
 // Direct light of a point is exact in one sample. The photons are the same ones in every unit but for a rounding.
 TEST(ScaleAndLight, OfAnySizeTogetherGiveTheSameRadianceTimesTheLight) {
     const FootOfLight light;
     const ColorD exact = light.radiance(1e-9);
-    const BothWays base = radiance_of(light.description(), gather_radius);
-    expect_same(base.photons, light.radiance(gather_radius), 0.1, "the base itself");
+    const BothWays base = radiance_both_ways(light.description(), foot_radius);
+    expect_same(base.photons, light.radiance(foot_radius), 0.1, "the base itself");
     for (const double unit : {1e-6, 3e-4, 1.0, 7e3, 1e6})
         for (const double factor : {1e-30, 1e-11, 1.0, 1e13, 1e30}) {
             const BothWays found =
-                radiance_of(changed(light.description(), unit, VectorD(0.0), factor), gather_radius * unit);
+                radiance_both_ways(changed(light.description(), unit, VectorD(0.0), factor), foot_radius * unit);
             const std::string what = "unit " + std::to_string(unit) + ", light " + std::to_string(factor);
             expect_same(found.sampled / factor, exact, 1e-6, what);
             expect_same(found.photons / factor, base.photons, 1e-6, what);
@@ -79,11 +79,11 @@ TEST(ScaleAndLight, OfAnySizeTogetherGiveTheSameRadianceTimesTheLight) {
 
 TEST(ScaleAndLight, AMillionSceneSizesFromTheOriginNothingChanges) {
     const FootOfLight light;
-    const BothWays base = radiance_of(light.description(), gather_radius);
+    const BothWays base = radiance_both_ways(light.description(), foot_radius);
     for (const double unit : {1e-6, 1.0, 1e6})
         for (const VectorD& direction : {VectorD(1, -0.7, 0.3), VectorD(-1e-3, 1, 1), VectorD(0, 0, 1)}) {
-            const BothWays found =
-                radiance_of(changed(light.description(), unit, direction * (1e6 * unit), 1.0), gather_radius * unit);
+            const BothWays found = radiance_both_ways(changed(light.description(), unit, direction * (1e6 * unit), 1.0),
+                                                      foot_radius * unit);
             expect_same(found.sampled, base.sampled, 1e-6, "sampled");
             expect_same(found.photons, base.photons, 1e-6, "photons");
         }
@@ -132,11 +132,11 @@ SceneDescription lit_sheet(double thickness, bool lit_from_below, bool seen_from
 
 TEST(ThinSheet, OfAHundredThousandthOfTheSceneLetsNoLightThrough) {
     for (const bool from_below : {false, true}) {
-        const BothWays dark = radiance_of(lit_sheet(1e-5, !from_below, from_below), gather_radius);
+        const BothWays dark = radiance_both_ways(lit_sheet(1e-5, !from_below, from_below), foot_radius);
         EXPECT_EQ(dark.sampled, ColorD(0.0));
         EXPECT_EQ(dark.photons, ColorD(0.0));
-        const BothWays thin = radiance_of(lit_sheet(1e-5, from_below, from_below), gather_radius);
-        const BothWays thick = radiance_of(lit_sheet(0.1, from_below, from_below), gather_radius);
+        const BothWays thin = radiance_both_ways(lit_sheet(1e-5, from_below, from_below), foot_radius);
+        const BothWays thick = radiance_both_ways(lit_sheet(0.1, from_below, from_below), foot_radius);
         const ColorD reflectance = from_below ? ColorD(0.25, 0.75, 0.5) : ColorD(0.5, 0.25, 0.75);
         expect_same(thin.sampled, reflectance * (16.0 / pi), 1e-5, "sampled");
         expect_same(thin.photons, thick.photons, 2e-3, "photons");
@@ -240,9 +240,10 @@ MeshDescription strips(const TiltedFloor& tilted, int count, double width, doubl
 // is known to 6e-8 of its length times that ratio: at 6e5 the same image is off by 0.7%.
 TEST(BadMeshes, SliversGiveTheImageOfAPlainFloor) {
     const TiltedFloor tilted;
-    const BothWays plain = radiance_of(tilted.description(tilted.plain()), gather_radius);
+    const BothWays plain = radiance_both_ways(tilted.description(tilted.plain()), foot_radius);
     expect_same(plain.sampled, ColorD(0.5 / (pi * 0.09)), 1e-6, "plain, sampled");
-    const BothWays slivers = radiance_of(tilted.description(strips(tilted, 10'000, 6e-5, -0.3, 0.3)), gather_radius);
+    const BothWays slivers =
+        radiance_both_ways(tilted.description(strips(tilted, 10'000, 6e-5, -0.3, 0.3)), foot_radius);
     expect_same(slivers.sampled, plain.sampled, 1e-5, "sampled");
     expect_same(slivers.photons, plain.photons, 2e-3, "photons");
 }
@@ -269,19 +270,19 @@ TEST(BadMeshes, TrianglesOfAMillionthOfTheSceneKeepTheirPlane) {
 TEST(BadMeshes, TrianglesWithoutAreaChangeNoBit) {
     const TiltedFloor tilted;
     MeshDescription floor = tilted.plain();
-    const BothWays plain = radiance_of(tilted.description(floor), gather_radius);
+    const BothWays plain = radiance_both_ways(tilted.description(floor), foot_radius);
     floor.positions.push_back(tilted.centre);
     floor.positions.push_back(tilted.centre + tilted.first * 0.1);
     floor.positions.push_back(tilted.centre + tilted.first * 0.2);
     floor.triangles.push_back({4, 4, 4});
     floor.triangles.push_back({0, 0, 1});
     floor.triangles.push_back({4, 5, 4});
-    const BothWays degenerate = radiance_of(tilted.description(floor), gather_radius);
+    const BothWays degenerate = radiance_both_ways(tilted.description(floor), foot_radius);
     EXPECT_EQ(degenerate.sampled, plain.sampled);
     EXPECT_EQ(degenerate.photons, plain.photons);
     // On one line, but not in one point: rounding may give it an area of its own, of some 1e-8.
     floor.triangles.push_back({4, 5, 6});
-    const BothWays line = radiance_of(tilted.description(floor), gather_radius);
+    const BothWays line = radiance_both_ways(tilted.description(floor), foot_radius);
     expect_same(line.sampled, plain.sampled, 1e-5, "sampled");
     expect_same(line.photons, plain.photons, 2e-3, "photons");
 }
@@ -289,15 +290,15 @@ TEST(BadMeshes, TrianglesWithoutAreaChangeNoBit) {
 TEST(BadMeshes, DuplicateTrianglesAndCoincidentSurfacesGiveTheImageOfOne) {
     const TiltedFloor tilted;
     const MeshDescription floor = tilted.plain();
-    const BothWays once = radiance_of(tilted.description(floor), gather_radius);
+    const BothWays once = radiance_both_ways(tilted.description(floor), foot_radius);
     MeshDescription twice = floor;
     twice.triangles.insert(twice.triangles.end(), floor.triangles.begin(), floor.triangles.end());
-    const BothWays duplicate = radiance_of(tilted.description(twice), gather_radius);
+    const BothWays duplicate = radiance_both_ways(tilted.description(twice), foot_radius);
     EXPECT_EQ(duplicate.sampled, once.sampled);
     EXPECT_EQ(duplicate.photons, once.photons);
     SceneDescription surfaces = tilted.description(floor);
     surfaces.shapes.push_back(surfaces.shapes[0]);
-    const BothWays coincident = radiance_of(surfaces, gather_radius);
+    const BothWays coincident = radiance_both_ways(surfaces, foot_radius);
     EXPECT_EQ(coincident.sampled, once.sampled);
     EXPECT_EQ(coincident.photons, once.photons);
     EXPECT_GE(find_narrow_gaps(build_scene(surfaces)).found, 8u);
@@ -329,17 +330,17 @@ TEST(BadMeshes, ALampOfDuplicateTrianglesIsNoBrighter) {
 TEST(BadMeshes, WithoutNormalsOrWithZeroNormalsAreFlat) {
     const TiltedFloor tilted;
     MeshDescription floor = tilted.plain();
-    const BothWays flat = radiance_of(tilted.description(floor), gather_radius);
+    const BothWays flat = radiance_both_ways(tilted.description(floor), foot_radius);
     expect_same(flat.sampled, ColorD(0.5 / (pi * 0.09)), 1e-6, "flat");
     for (const VectorD& normal : {VectorD(0.0), VectorD(1e-300, 0.0, 0.0), VectorD(0.0, -1e-60, 0.0)}) {
         floor.normals.assign(4, normal);
-        const BothWays zero = radiance_of(tilted.description(floor), gather_radius);
+        const BothWays zero = radiance_both_ways(tilted.description(floor), foot_radius);
         EXPECT_EQ(zero.sampled, flat.sampled) << normal.x;
         EXPECT_EQ(zero.photons, flat.photons) << normal.x;
     }
     // Where only some are zero, the others decide; all of these are right, whatever their length.
     floor.normals = {tilted.normal, VectorD(0.0), tilted.normal * 1e30, tilted.normal * 1e-30};
-    expect_same(radiance_of(tilted.description(floor), gather_radius).sampled, flat.sampled, 1e-6, "some");
+    expect_same(radiance_both_ways(tilted.description(floor), foot_radius).sampled, flat.sampled, 1e-6, "some");
 }
 
 TEST(BadMeshes, VerticesThatAreNotFiniteAreRefused) {

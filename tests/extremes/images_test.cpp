@@ -16,19 +16,19 @@
 namespace photonlab::test {
 namespace {
 
-constexpr double gather_radius = 0.1;
+constexpr double image_radius = 0.1;
 
 /// Every way to make an image.
 std::vector<MethodSettings> all_methods() {
     return {{.integrator = "path"},
-            {.radius = gather_radius, .photons_per_pass = 500},
+            {.radius = image_radius, .photons_per_pass = 500},
             {.photons_per_pass = 500},  // automatic radius
             {.schedule = ScheduleName::KnausZwicker, .direct = DirectMode::Photons, .photons_per_pass = 500},
             {.integrator = "photonmapper", .photons_per_pass = 500},
             {.integrator = "photonmapper", .mode = GatherMode::Nearest, .photons_per_pass = 500},
             {.integrator = "photonmapper",
              .mode = GatherMode::Nearest,
-             .max_radius = gather_radius,
+             .max_radius = image_radius,
              .direct = DirectMode::Photons,
              .photons_per_pass = 500}};
 }
@@ -59,7 +59,7 @@ TEST(ImageSize, OfOnePixelIsTheMiddleOfALargerImage) {
     for (const DirectMode direct : {DirectMode::Sampled, DirectMode::Photons})
         for (const std::string integrator : {"ppm", "photonmapper"}) {
             const MethodSettings method{
-                .integrator = integrator, .radius = gather_radius, .direct = direct, .photons_per_pass = 2000};
+                .integrator = integrator, .radius = image_radius, .direct = direct, .photons_per_pass = 2000};
             const Image one = render(build_scene(foot_seen_by(1, 1, 10.0)), method, {.passes = 3}).image;
             const Image many = render(build_scene(foot_seen_by(33, 33, 10.0)), method, {.passes = 3}).image;
             ASSERT_EQ(one.find(direct_layer)->size(), 1u);
@@ -76,7 +76,7 @@ TEST(ImageSize, OfOnePixelIsTheMiddleOfALargerImage) {
 TEST(ImageSize, OfOneRowOrColumnIsThatOfALargerImage) {
     constexpr int side = 257;
     constexpr double fov = 20.0;
-    const MethodSettings method{.radius = gather_radius, .photons_per_pass = 300};
+    const MethodSettings method{.radius = image_radius, .photons_per_pass = 300};
     const Image square = render(build_scene(foot_seen_by(side, side, fov)), method, {.passes = 2}).image;
     const Image row = render(build_scene(foot_seen_by(side, 1, fov)), method, {.passes = 2}).image;
     const Image column = render(build_scene(foot_seen_by(1, side, fov_of_one(fov, side))), method, {.passes = 2}).image;

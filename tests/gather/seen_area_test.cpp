@@ -18,7 +18,7 @@
 namespace photonlab {
 namespace {
 
-constexpr double z_limit = 4.5;
+constexpr double seen_z_limit = 4.5;
 constexpr double radius = 0.02;  // unit box
 
 /// Where a line downwards meets the scene first, in scene units.
@@ -71,7 +71,7 @@ void expect_mean(const std::string& what, const Scene& scene, const SurfaceEnd& 
         const double mean = sum / series;
         const double error = std::sqrt(std::max(0.0, sum_of_squares / series - mean * mean) / (series - 1));
         EXPECT_LT(error, 0.005) << what << ", " << per_ring << " lines: too noisy to say anything";
-        EXPECT_NEAR(mean, expected, z_limit * error + 2e-5) << what << ", " << per_ring << " lines";
+        EXPECT_NEAR(mean, expected, seen_z_limit * error + 2e-5) << what << ", " << per_ring << " lines";
     }
 }
 

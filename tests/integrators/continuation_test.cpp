@@ -12,7 +12,7 @@
 namespace photonlab::test {
 namespace {
 
-std::vector<NamedMethod> methods() {
+std::vector<NamedMethod> continued_methods() {
     std::vector<NamedMethod> methods = methods_by_every_radius_rule({});
     const MethodSettings seen{.kernel = Kernel::Cone, .area = AreaMode::Seen, .area_lines = 4};
     const MethodSettings linear{.integrator = "sppm", .area = AreaMode::Linear, .area_lines = 4};
@@ -116,7 +116,7 @@ TEST_P(Continuation, RefusesTheStateOfOtherHitPoints) {
     EXPECT_THROW(restore(loop, state), InputError);
 }
 
-INSTANTIATE_TEST_SUITE_P(OfEveryMethod, Continuation, ::testing::ValuesIn(methods()), [](const auto& tested) {
+INSTANTIATE_TEST_SUITE_P(OfEveryMethod, Continuation, ::testing::ValuesIn(continued_methods()), [](const auto& tested) {
     std::string name;
     for (const char c : tested.param.name) name += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
     return name;

@@ -11,7 +11,7 @@
 namespace photonlab::test {
 namespace {
 
-constexpr double gather_radius = 0.3;
+constexpr double floor_radius = 0.3;
 
 /// One hit point on the room's floor.
 Scene floor_of_room() {
@@ -23,7 +23,7 @@ Scene floor_of_room() {
 MethodSettings progressive(ScheduleName schedule, double alpha) {
     return {.schedule = schedule,
             .alpha = alpha,
-            .radius = gather_radius,
+            .radius = floor_radius,
             .direct = DirectMode::Photons,
             .photons_per_pass = 60};
 }
@@ -43,7 +43,7 @@ TEST(ProgressivePhotonMapping, IsTheShrinkingFluxOfItsPaper) {
     for (const double alpha : {0.1, 0.5, 0.7, 0.95, 1.0}) {
         const MethodSettings method = progressive(ScheduleName::Hachisuka, alpha);
         PassLoop run = loop_of(method, scene, hit_points);
-        double squared_radius = gather_radius * gather_radius / (scene.unit_length * scene.unit_length);
+        double squared_radius = floor_radius * floor_radius / (scene.unit_length * scene.unit_length);
         double count = 0.0;
         ColorD flux(0.0);
         std::uint64_t paths = 0;
@@ -83,7 +83,7 @@ TEST(ProgressivePhotonMapping, KnausZwickerRadiiIgnoreThePhotons) {
             for (std::size_t i = 1; i <= result.radii.size(); ++i) {
                 const double n = static_cast<double>(i);
                 const double share = std::exp(std::lgamma(n + alpha) - std::lgamma(1.0 + alpha) - std::lgamma(n + 1.0));
-                EXPECT_NEAR(result.radii[i - 1], gather_radius * std::sqrt(share), 1e-9) << "pass " << i;
+                EXPECT_NEAR(result.radii[i - 1], floor_radius * std::sqrt(share), 1e-9) << "pass " << i;
             }
         }
 }
@@ -149,7 +149,7 @@ TEST(PhotonMapping, GathersNothingThroughAThinWall) {
 TEST(PhotonMapping, CountsThePhotonsThatItGathered) {
     const Scene scene = floor_of_room();
     const HitPoints hit_points = trace_hit_points(scene, 1, 1);
-    const double radius = gather_radius / scene.unit_length;
+    const double radius = floor_radius / scene.unit_length;
     std::uint64_t expected = 0;
     for (std::uint64_t pass = 1; pass <= 4; ++pass) {
         const PhotonPass photons = trace_photons(scene, {.paths = 2000, .store_direct = true}, pass, 1);
@@ -159,7 +159,7 @@ TEST(PhotonMapping, CountsThePhotonsThatItGathered) {
     for (const char* integrator : {"ppm", "photonmapper"}) {
         const MethodSettings method{.integrator = integrator,
                                     .alpha = 1.0,
-                                    .radius = gather_radius,
+                                    .radius = floor_radius,
                                     .direct = DirectMode::Photons,
                                     .photons_per_pass = 2000};
         const Rendering result = render(scene, hit_points, method, {.passes = 4, .show_every_pass = true});

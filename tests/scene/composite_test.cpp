@@ -9,16 +9,12 @@
 #include "image/png.h"
 #include "scene/scene.h"
 #include "tests/scene/described.h"
+#include "tests/scene/geometry.h"
 #include "tests/scene/scene_folder.h"
 #include "tests/support/layered.h"
 
 namespace photonlab {
 namespace {
-
-Vector at_angle(double degrees) {
-    const double angle = degrees * pi / 180.0;
-    return Vector(VectorD(std::sin(angle), 0.0, std::cos(angle)));
-}
 
 Material lambertian(float reflectance, bool two_sided) {
     return {.id = "lambertian", .bsdf = Diffuse{Color(reflectance)}, .two_sided = two_sided};
@@ -33,7 +29,7 @@ Scene square_of(const Material& material) {
 }
 
 /// As a ray along the z axis sees it that comes from the side of `z`, and leaves along `outgoing`.
-std::optional<Surface> seen_from(const Scene& scene, float z, const Vector& outgoing) {
+std::optional<Surface> seen_along_z(const Scene& scene, float z, const Vector& outgoing) {
     const auto hit = intersect(scene, {{0.01f, 0.02f, z}, {0, 0, -z}});
     return hit ? orient(scene, *hit, outgoing) : std::nullopt;
 }
@@ -41,7 +37,7 @@ std::optional<Surface> seen_from(const Scene& scene, float z, const Vector& outg
 /// f pi at 40 degrees, for light from 20 degrees on the other side of the normal.
 std::optional<float> reflectance_from(const Scene& scene, float z) {
     const Vector outgoing = at_angle(40.0);
-    const auto surface = seen_from(scene, z, {outgoing.x, outgoing.y, z * outgoing.z});
+    const auto surface = seen_along_z(scene, z, {outgoing.x, outgoing.y, z * outgoing.z});
     if (!surface) return std::nullopt;
     return evaluate(surface->bsdf, outgoing, at_angle(-20.0)).x * static_cast<float>(pi);
 }
@@ -66,7 +62,7 @@ TEST(Composites, AreCoatedFromBehindToo) {
     EXPECT_EQ(*reflectance_from(both, -1.0f), *reflectance_from(both, 1.0f));
     const Scene one = square_of(coated(lambertian(0.8f, false)));
     EXPECT_EQ(reflectance_from(one, -1.0f).value_or(1.0f), 0.0f);
-    const auto behind = seen_from(one, -1.0f, Vector(0.6f, 0.0f, -0.8f));
+    const auto behind = seen_along_z(one, -1.0f, Vector(0.6f, 0.0f, -0.8f));
     ASSERT_TRUE(behind);
     const SpecularBranches branches = specular_branches(behind->bsdf, {0.6f, 0.0f, 0.8f}, Carried::Radiance);
     ASSERT_EQ(branches.count, 1);
@@ -191,7 +187,7 @@ protected:
     }
     Vector normal_behind(const std::string& bsdf) const {
         const Scene scene = build_scene(load_as("3.0.0", "<shape type='rectangle'>" + bsdf + "</shape>"));
-        const auto surface = seen_from(scene, -1.0f, {0.0f, 0.0f, -1.0f});
+        const auto surface = seen_along_z(scene, -1.0f, {0.0f, 0.0f, -1.0f});
         return surface ? surface->frame.normal : Vector(0.0f);
     }
     void expect_normal_behind(const std::string& bsdf, const Vector& expected) const {
@@ -233,7 +229,7 @@ TEST(Holes, StayOpenWhereShadingAndGeometricNormalDisagree) {
     mask.normals = normals_that_lean();
     const Vector outgoing = at_angle(-75.0);
     ASSERT_LT(outgoing.dot(leaning), 0.0f);
-    const auto surface = seen_from(square_of(mask), 1.0f, outgoing);
+    const auto surface = seen_along_z(square_of(mask), 1.0f, outgoing);
     ASSERT_TRUE(surface);
     EXPECT_FALSE(is_scattering(surface->bsdf));
     const SpecularBranches branches =
@@ -246,7 +242,7 @@ TEST(Holes, StayOpenWhereShadingAndGeometricNormalDisagree) {
 
     Material opaque = grey;
     opaque.normals = normals_that_lean();
-    EXPECT_FALSE(seen_from(square_of(opaque), 1.0f, outgoing));
+    EXPECT_FALSE(seen_along_z(square_of(opaque), 1.0f, outgoing));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "scene/scene.h"
+#include "tests/scene/geometry.h"
 #include "tests/scene/scene_folder.h"
 
 namespace photonlab {
@@ -20,15 +21,6 @@ protected:
 
 const ColorD white(1.0);
 const ColorD equal_energy(1.204795, 0.948291, 0.908917);  // XYZ (1, 1, 1) in linear sRGB
-
-void expect_near(const VectorD& a, const VectorD& b, double tolerance) {
-    for (int i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], tolerance) << i;
-}
-
-VectorD normal_of(const MeshDescription& mesh, std::size_t triangle = 0) {
-    const auto& t = mesh.triangles.at(triangle);
-    return (mesh.positions[t.y] - mesh.positions[t.x]).cross(mesh.positions[t.z] - mesh.positions[t.x]).normalized();
-}
 
 TEST_F(FamiliesTest, FollowTheVersionAndWhatHasNoneIsRefused) {
     const auto message = [&](const std::string& attributes) {

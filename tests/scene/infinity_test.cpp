@@ -24,7 +24,7 @@ ColorImage black(int width, int height) {
 }
 
 /// Towards (u, v) of the image: u = atan2(x, -z) / (2 pi), v = acos(y) / pi.
-VectorD towards(double u, double v) {
+VectorD direction_at(double u, double v) {
     return {std::sin(pi * v) * std::sin(2.0 * pi * u), std::cos(pi * v), -std::sin(pi * v) * std::cos(2.0 * pi * u)};
 }
 
@@ -33,7 +33,7 @@ TEST(EnvironmentImages, HaveOneBrightTexelWhereMitsubaHasIt) {
     image.pixels[3 * 8 + 6] = Color(2.0f, 4.0f, 8.0f);  // row 3, column 6
     const EnvironmentImage old(image, Rows::Centred);
     const EnvironmentImage current(image, Rows::FromPoleToPole);
-    const auto at = [](const EnvironmentImage& map, double u, double v) { return map.radiance(towards(u, v)).y; };
+    const auto at = [](const EnvironmentImage& map, double u, double v) { return map.radiance(direction_at(u, v)).y; };
     EXPECT_NEAR(at(old, 6.5 / 8, 3.5 / 5), 4.0, 1e-9);
     EXPECT_NEAR(at(current, 6.5 / 8, 3.0 / 4), 4.0, 1e-9);
     EXPECT_NEAR(at(old, 7.0 / 8, 3.5 / 5), 2.0, 1e-9) << "half a column to the right";
@@ -48,10 +48,10 @@ TEST(EnvironmentImages, GoAroundAndReachThePoles) {
     image.pixels[1 * 4 + 0] = Color(1.0f);
     image.pixels[0 * 4 + 1] = Color(3.0f);
     const EnvironmentImage old(image, Rows::Centred);
-    EXPECT_NEAR(old.radiance(towards(0.0, 0.5)).x, 0.5, 1e-9) << "between the last column and the first";
-    EXPECT_NEAR(old.radiance(towards(1.5 / 4, 0.05)).x, 3.0, 1e-9) << "above the middle of the first row";
+    EXPECT_NEAR(old.radiance(direction_at(0.0, 0.5)).x, 0.5, 1e-9) << "between the last column and the first";
+    EXPECT_NEAR(old.radiance(direction_at(1.5 / 4, 0.05)).x, 3.0, 1e-9) << "above the middle of the first row";
     const EnvironmentImage current(image, Rows::FromPoleToPole);
-    EXPECT_NEAR(current.radiance(towards(1.5 / 4, 1e-6)).x, 3.0, 1e-4);
+    EXPECT_NEAR(current.radiance(direction_at(1.5 / 4, 1e-6)).x, 3.0, 1e-4);
 }
 
 class EnvironmentDensity : public ::testing::TestWithParam<Rows> {};
@@ -70,8 +70,8 @@ TEST_P(EnvironmentDensity, IsThatOfItsSamplesAndCoversWhatShines) {
             const VectorD direction = map.sample(random.next_2d());
             return std::pair(direction.y, turn_to(-direction.z, direction.x));
         },
-        [&](double y, double u) { return map.density(towards(u, std::acos(y) / pi)) * 2.0 * pi; }, -1.0, 1.0, 0.0, 1.0,
-        200'000, 64);
+        [&](double y, double u) { return map.density(direction_at(u, std::acos(y) / pi)) * 2.0 * pi; }, -1.0, 1.0, 0.0,
+        1.0, 200'000, 64);
     for (int i = 0; i < 2000; ++i) {
         const VectorD direction = VectorD(sample_unit_sphere(random.next_2d())).normalized();
         if (map.radiance(direction).x > 0.0) {
@@ -183,7 +183,7 @@ TEST(LightFromInfinity, IsSeenByRaysThatLeaveTheScene) {
     const Scene scene =
         build_scene(open_floor(EnvironmentMapDescription{.image = sky, .scale = 2.0, .place = "test:1"}));
     ASSERT_TRUE(scene.environment);
-    const Vector centre(towards(2.5 / 8, 0.5));
+    const Vector centre(direction_at(2.5 / 8, 0.5));
     EXPECT_NEAR(escaped_radiance(scene, centre).x, 10.0, 1e-4);
     EXPECT_EQ(escaped_radiance(scene, -centre), ColorD(0.0));
     EXPECT_EQ(escaped_radiance(build_scene(describe({floor_of_eight()})), centre), ColorD(0.0));
@@ -204,7 +204,7 @@ TEST(UnitBox, IsMadeForWhatStandsOnAPlain) {
 }
 
 /// A square of that size at the origin, and a camera that looks down on it from `distance`.
-SceneDescription seen_from(double distance, double fov_degrees, std::vector<ShapeDescription> shapes) {
+SceneDescription seen_from_above(double distance, double fov_degrees, std::vector<ShapeDescription> shapes) {
     SceneDescription description = describe(std::move(shapes));
     description.camera.to_world = Matrix(1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, distance, 1);
     description.camera.fov_x = fov_degrees;
@@ -218,28 +218,28 @@ ShapeDescription flat(double size, double height = 0.0) {
 
 // What a narrow view shows large is what the scene is about, from however far.
 TEST(UnitBox, IsMadeForWhatALongLensShows) {
-    EXPECT_NEAR(build_scene(seen_from(25.0, 5.0, {flat(1.0), flat(8e6, -1.0)})).unit_length, 1.0, 1e-9);
-    EXPECT_NEAR(build_scene(seen_from(300.0, 0.5, {flat(1.0), flat(8e6, -1.0)})).unit_length, 1.0, 1e-9);
-    EXPECT_NEAR(build_scene(seen_from(300.0, 60.0, {flat(1.0), flat(8e6, -1.0)})).unit_length, 8e6, 1.0);
+    EXPECT_NEAR(build_scene(seen_from_above(25.0, 5.0, {flat(1.0), flat(8e6, -1.0)})).unit_length, 1.0, 1e-9);
+    EXPECT_NEAR(build_scene(seen_from_above(300.0, 0.5, {flat(1.0), flat(8e6, -1.0)})).unit_length, 1.0, 1e-9);
+    EXPECT_NEAR(build_scene(seen_from_above(300.0, 60.0, {flat(1.0), flat(8e6, -1.0)})).unit_length, 8e6, 1.0);
 }
 
 TEST(UnitBox, IsMadeForTheInnermostThatIsSeen) {
-    EXPECT_NEAR(build_scene(seen_from(3.0, 40.0, {flat(1.0), flat(300.0, -1.0), flat(1e6, -2.0)})).unit_length, 1.0,
-                1e-9);
-    EXPECT_NEAR(build_scene(seen_from(300.0, 40.0, {flat(1.0), flat(300.0, -1.0), flat(1e6, -2.0)})).unit_length, 300.0,
-                1e-6);
+    EXPECT_NEAR(build_scene(seen_from_above(3.0, 40.0, {flat(1.0), flat(300.0, -1.0), flat(1e6, -2.0)})).unit_length,
+                1.0, 1e-9);
+    EXPECT_NEAR(build_scene(seen_from_above(300.0, 40.0, {flat(1.0), flat(300.0, -1.0), flat(1e6, -2.0)})).unit_length,
+                300.0, 1e-6);
 }
 
 // A lamp or a trinket close to the camera does not make the room around it a surrounding.
 TEST(UnitBox, HoldsTheRoomAroundASmallLamp) {
     const ShapeDescription room = shape(cube({0, 0, 0}, 2.0));
     const ShapeDescription lamp = shape(SphereDescription{.centre = {0, 0, 0.9}, .radius = 0.01}, ColorD(1.0));
-    EXPECT_EQ(build_scene(seen_from(1.0, 40.0, {room, lamp})).unit_length, 4.0);
-    SceneDescription trinket = seen_from(1.0, 40.0, {room, shape(lamp.geometry)});
+    EXPECT_EQ(build_scene(seen_from_above(1.0, 40.0, {room, lamp})).unit_length, 4.0);
+    SceneDescription trinket = seen_from_above(1.0, 40.0, {room, shape(lamp.geometry)});
     trinket.lights = {PointLightDescription{.position = {0, 0, 1.5}, .intensity = ColorD(1.0), .place = "test:1"}};
     EXPECT_EQ(build_scene(trinket).unit_length, 4.0);
     // On a plain beyond what floats resolve it is what the scene is about all the same.
-    SceneDescription lamp_on_a_plain = seen_from(1.0, 40.0, {flat(8e6), lamp});
+    SceneDescription lamp_on_a_plain = seen_from_above(1.0, 40.0, {flat(8e6), lamp});
     EXPECT_NEAR(build_scene(lamp_on_a_plain).unit_length, 0.02, 1e-9);
 }
 

@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "core/error.h"
+#include "tests/scene/geometry.h"
 
 namespace photonlab {
 namespace {
@@ -56,17 +57,6 @@ protected:
 
 const MeshDescription& mesh_of(const SceneDescription& scene, std::size_t shape = 0) {
     return std::get<MeshDescription>(scene.shapes.at(shape).geometry);
-}
-
-void expect_near(const VectorD& a, const VectorD& b, double tolerance = 1e-12) {
-    EXPECT_NEAR(a.x, b.x, tolerance);
-    EXPECT_NEAR(a.y, b.y, tolerance);
-    EXPECT_NEAR(a.z, b.z, tolerance);
-}
-
-VectorD normal_of(const MeshDescription& mesh, std::size_t triangle) {
-    const auto& t = mesh.triangles.at(triangle);
-    return (mesh.positions[t.y] - mesh.positions[t.x]).cross(mesh.positions[t.z] - mesh.positions[t.x]).normalized();
 }
 
 TEST_F(LoaderTest, OneValueStandsForThreeAsInMitsuba) {

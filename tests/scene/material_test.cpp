@@ -8,13 +8,10 @@
 
 #include "core/random.h"
 #include "tests/support/chi_square.h"
+#include "tests/support/test_stream.h"
 
 namespace photonlab {
 namespace {
-
-RandomStream test_stream() {
-    return RandomStream(13, RandomPurpose::Test, 1, 0);
-}
 
 Bsdf diffuse(const Color& reflectance) {
     return Diffuse{reflectance};
@@ -24,7 +21,7 @@ const Vector outgoing(0.6f, 0.0f, 0.8f);
 
 TEST(Diffuse, SamplesByItsDensity) {
     const Bsdf material = diffuse(Color(0.5f));
-    RandomStream random = test_stream();
+    RandomStream random = test_stream(0, 13);
     expect_distributed(
         [&] {
             const auto drawn = sample(material, outgoing, Carried::Radiance, random.next_2d());
@@ -52,7 +49,7 @@ TEST(Diffuse, StretchesSolidAngleByTheInverseOfItsDensity) {
 
 TEST(Diffuse, WeighsASampleByValueTimesCosineOverDensity) {
     const Bsdf material = diffuse(Color(0.3f, 0.6f, 0.9f));
-    RandomStream random = test_stream();
+    RandomStream random = test_stream(0, 13);
     for (int i = 0; i < 1000; ++i) {
         const auto drawn = sample(material, outgoing, Carried::Radiance, random.next_2d());
         ASSERT_TRUE(drawn);

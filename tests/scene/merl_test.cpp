@@ -18,15 +18,12 @@
 #include "tests/image/scratch_folder.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/merl_numbers.h"
+#include "tests/support/test_stream.h"
 
 namespace photonlab::test {
 namespace {
 
 constexpr std::size_t bins = 90 * 90 * 180;
-
-RandomStream test_stream(std::uint64_t index = 0) {
-    return RandomStream(17, RandomPurpose::Test, 1, index);
-}
 
 /// Shiny, and made once.
 const Formula& shiny() {
@@ -49,7 +46,7 @@ TEST(Merl, FindsANumberOfTheFileByItsAngles) {
     std::vector<double> numbers(3 * bins);
     for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<double>(i + 1);
     const Material material = measured(make_merl_table(numbers, "test"));
-    RandomStream random = test_stream();
+    RandomStream random = test_stream(0, 17);
     int found = 0;
     for (int i = 0; i < 100'000; ++i) {
         const Imath::V2f u = random.next_2d();
@@ -78,7 +75,7 @@ TEST(Merl, FindsANumberOfTheFileByItsAngles) {
 }
 
 TEST(Merl, IsNearTheFormulaBetweenTheBinsMiddles) {
-    RandomStream random = test_stream(1);
+    RandomStream random = test_stream(1, 17);
     double deviation = 0.0;
     double sum = 0.0;
     for (int i = 0; i < 200'000; ++i) {
@@ -97,7 +94,7 @@ TEST(Merl, IsNearTheFormulaBetweenTheBinsMiddles) {
 }
 
 TEST(Merl, IsReciprocalToTheBit) {
-    RandomStream random = test_stream(2);
+    RandomStream random = test_stream(2, 17);
     for (int i = 0; i < 100'000; ++i) {
         const Vector a = sample_cosine_hemisphere(random.next_2d());
         const Vector b = sample_cosine_hemisphere(random.next_2d());
@@ -179,7 +176,7 @@ TEST(Merl, SamplesByItsDensity) {
             const double lost =
                 share_of_half_vectors_reflecting_below(*std::get<Merl>(material->bsdf).table, at_degrees(degrees));
             const double column = pi / 2.0 / 11.0;
-            RandomStream random = test_stream(index++);
+            RandomStream random = test_stream(index++, 17);
             expect_distributed(
                 [&]() -> std::pair<double, double> {
                     const auto drawn = sample(material->bsdf, outgoing, Carried::Radiance, random.next_2d());
@@ -195,7 +192,7 @@ TEST(Merl, SamplesByItsDensity) {
 }
 
 TEST(Merl, WeighsASampleByValueTimesCosineOverDensity) {
-    RandomStream random = test_stream(3);
+    RandomStream random = test_stream(3, 17);
     const Vector outgoing(at_degrees(50.0));
     for (int i = 0; i < 10'000; ++i) {
         const auto drawn = sample(shiny_material().bsdf, outgoing, Carried::Flux, random.next_2d());
@@ -219,7 +216,7 @@ TEST(Merl, SamplesShinyDataBetterThanTheCosineDoes) {
     for (const Case& at : {Case{shiny_material(), 1.5}, Case{very_shiny, 20.0}})
         for (const double degrees : {0.0, 30.0, 60.0, 80.0}) {
             const Vector outgoing(at_degrees(degrees));
-            RandomStream random = test_stream(4);
+            RandomStream random = test_stream(4, 17);
             double sums[2] = {};
             double squares[2] = {};
             constexpr int samples = 100'000;
@@ -258,7 +255,7 @@ TEST(Merl, BoundsEveryWeight) {
     std::vector<double> numbers(3 * bins, 100.0);
     for (std::size_t i = 0; i < 20 * 90 * 180; ++i) numbers[i] = numbers[bins + i] = numbers[2 * bins + i] = 1e5;
     const Material material = measured(make_merl_table(numbers, "test"));
-    RandomStream random = test_stream(5);
+    RandomStream random = test_stream(5, 17);
     for (int i = 0; i < 100'000; ++i) {
         const Vector outgoing = sample_cosine_hemisphere(random.next_2d());
         const auto drawn = sample(material.bsdf, outgoing, Carried::Radiance, random.next_2d());

@@ -15,6 +15,7 @@
 #include "scene/shapes/ply.h"
 #include "scene/shapes/serialized.h"
 #include "tests/scene/described.h"
+#include "tests/scene/geometry.h"
 #include "tests/scene/scene_folder.h"
 
 namespace photonlab {
@@ -231,12 +232,6 @@ protected:
                           "'>\n<string name='filename' value='" + file + "'/>\n" + properties + "</shape></scene>");
     }
 };
-
-VectorD normal_of(const MeshDescription& mesh, std::size_t triangle) {
-    const auto& vertices = mesh.triangles.at(triangle);
-    const VectorD& corner = mesh.positions[vertices.x];
-    return (mesh.positions[vertices.y] - corner).cross(mesh.positions[vertices.z] - corner).normalized();
-}
 
 /// Texture coordinates of the triangle's corner at (x, y).
 Imath::V2d texture_at(const MeshDescription& mesh, std::size_t triangle, double x, double y) {

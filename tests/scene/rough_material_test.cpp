@@ -11,16 +11,12 @@
 #include "core/sampling.h"
 #include "scene/materials/material.h"
 #include "tests/scene/described.h"
+#include "tests/scene/geometry.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/layered.h"
 
 namespace photonlab {
 namespace {
-
-Vector at_angle(double degrees, double azimuth = 0.0) {
-    const double angle = degrees * pi / 180.0;
-    return Vector(VectorD(std::sin(angle) * std::cos(azimuth), std::sin(angle) * std::sin(azimuth), std::cos(angle)));
-}
 
 constexpr double angles[] = {0.0, 30.0, 60.0, 80.0, 89.0};
 

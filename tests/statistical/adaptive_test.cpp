@@ -12,13 +12,13 @@
 namespace photonlab::test {
 namespace {
 
-constexpr double height = 2.0;
+constexpr double lamp_height = 2.0;
 constexpr double albedo = 0.5;
 
 /// A floor below a point light of intensity 1, seen at the foot.
 Scene foot_of_light() {
     SceneDescription description = floor_seen_at_origin(Color(static_cast<float>(albedo)), 40.0);
-    description.lights = {point_light(VectorD(0.0, height, 0.0), ColorD(1.0))};
+    description.lights = {point_light(VectorD(0.0, lamp_height, 0.0), ColorD(1.0))};
     return build_scene(description);
 }
 
@@ -55,8 +55,8 @@ TEST(Curvature, BelowAPointLightIsWhatIsPredicted) {
                                         std::pow(scene.total_power / (length * length), 2.0));
             squared_estimate.push_back(at.squared_estimate / 3.0 * scene.total_power * scene.total_power);
         }
-        const double q = std::sqrt(1.0 + bandwidth * bandwidth / (height * height));
-        const double expected = -48.0 / (std::pow(height, 4.0) * q * std::pow(q + 1.0, 3.0)) * albedo / pi;
+        const double q = std::sqrt(1.0 + bandwidth * bandwidth / (lamp_height * lamp_height));
+        const double expected = -48.0 / (std::pow(lamp_height, 4.0) * q * std::pow(q + 1.0, 3.0)) * albedo / pi;
         claims.mean_is("Laplacian, radius " + std::to_string(radius), laplacian, expected, 0.2);
 
         // A path leaves one photon of flux 4 pi / n. Second moments by quadrature over the disc.
@@ -66,7 +66,7 @@ TEST(Curvature, BelowAPointLightIsWhatIsPredicted) {
         constexpr int rings = 20'000;
         for (int ring = 0; ring < rings; ++ring) {
             const double s = bandwidth * (ring + 0.5) / rings;
-            const double irradiance = height / std::pow(height * height + s * s, 1.5);
+            const double irradiance = lamp_height / std::pow(lamp_height * lamp_height + s * s, 1.5);
             const double photons = irradiance * albedo / pi * flux * 2.0 * pi * s * bandwidth / rings;
             const double kernel = curvature_kernel(s * s, bandwidth * bandwidth);
             of_laplacian += photons * kernel * kernel;
@@ -80,7 +80,7 @@ TEST(Curvature, BelowAPointLightIsWhatIsPredicted) {
 /// Mean squared error at the foot after `passes` passes over runs.
 double squared_error(const Scene& scene, const HitPoints& points, const MethodSettings& method, std::uint64_t passes,
                      std::uint64_t runs) {
-    const double truth = albedo / pi / (height * height);
+    const double truth = albedo / pi / (lamp_height * lamp_height);
     double sum = 0.0;
     for (std::uint64_t seed = 1; seed <= runs; ++seed) {
         const double value =
@@ -97,7 +97,7 @@ TEST(AdaptiveRadius, ShrinksATooLargeDiscAtAMaximum) {
     const HitPoints points = trace_hit_points(scene, 1, 1);
     MethodSettings method{.schedule = ScheduleName::KnausZwicker,
                           .alpha = 2.0 / 3.0,
-                          .radius = 0.8 * height,
+                          .radius = 0.8 * lamp_height,
                           .direct = DirectMode::Photons,
                           .max_depth = 2,
                           .photons_per_pass = 4000};
@@ -111,7 +111,7 @@ TEST(AdaptiveRadius, ConvergesWithTwoThirdsOfAnOrder) {
     const Scene scene = foot_of_light();
     const HitPoints points = trace_hit_points(scene, 1, 1);
     const MethodSettings method{.schedule = ScheduleName::Adaptive,
-                                .radius = 0.4 * height,
+                                .radius = 0.4 * lamp_height,
                                 .direct = DirectMode::Photons,
                                 .max_depth = 2,
                                 .photons_per_pass = 1000};

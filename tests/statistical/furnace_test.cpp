@@ -12,13 +12,13 @@
 namespace photonlab::test {
 namespace {
 
-const Color wall_colour(0.2f, 0.5f, 0.75f);
+const Color furnace_colour(0.2f, 0.5f, 0.75f);
 const ColorD wall_radiance(1.0, 3.0, 2.0);
-constexpr double gather_radius = 0.15;
+constexpr double furnace_radius = 0.15;
 
 /// Radiance of the orders of reflection from `first` to `last`; last = -1 is all.
-double radiance_of_orders(int c, int first, int last) {
-    const double rho = wall_colour[c];
+double furnace_radiance_of_orders(int c, int first, int last) {
+    const double rho = furnace_colour[c];
     const double beyond = last < 0 ? 0.0 : std::pow(rho, last + 1);
     return wall_radiance[c] * (std::pow(rho, first) - beyond) / (1.0 - rho);
 }
@@ -26,14 +26,14 @@ double radiance_of_orders(int c, int first, int last) {
 struct Furnace {
     std::string name;
     Scene scene;
-    double share_found;  ///< of photons that a gather of gather_radius accepts: integrating_sphere_test.cpp says why
+    double share_found;  ///< of photons that a gather of furnace_radius accepts: integrating_sphere_test.cpp says why
 };
 
 std::vector<Furnace> furnaces() {
     std::vector<Furnace> result;
-    result.push_back({"sphere", build_scene(hollow_sphere(wall_colour, wall_radiance)),
-                      1.0 - gather_radius * gather_radius / (8.0 * sphere_radius * sphere_radius)});
-    result.push_back({"cube", build_scene(hollow_cube(wall_colour, wall_radiance)), 1.0});
+    result.push_back({"sphere", build_scene(hollow_sphere(furnace_colour, wall_radiance)),
+                      1.0 - furnace_radius * furnace_radius / (8.0 * sphere_radius * sphere_radius)});
+    result.push_back({"cube", build_scene(hollow_cube(furnace_colour, wall_radiance)), 1.0});
     return result;
 }
 
@@ -48,7 +48,7 @@ TEST(Furnace, EveryMethodSeesTheExactRadiance) {
                     if (integrator == "photonmapper" && reflections > 1) continue;
                     if (integrator == "ppm" && reflections == 2) continue;
                     const MethodSettings method{.integrator = integrator,
-                                                .radius = gather_radius,
+                                                .radius = furnace_radius,
                                                 .direct = direct,
                                                 .direct_samples = 16,
                                                 .max_depth = reflections < 0 ? -1 : reflections + 1,
@@ -72,12 +72,13 @@ TEST(Furnace, EveryMethodSeesTheExactRadiance) {
                         if (direct == DirectMode::Photons || reflections == 0)
                             EXPECT_EQ(SampleMean(direct_values[c]).mean, 0.0) << what;
                         else
-                            claims.mean_is(what + "direct", direct_values[c], radiance_of_orders(c, 1, 1), 0.01);
+                            claims.mean_is(what + "direct", direct_values[c], furnace_radiance_of_orders(c, 1, 1),
+                                           0.01);
                         if (reflections >= 0 && reflections < first_gathered)
                             EXPECT_EQ(SampleMean(gathered_values[c]).mean, 0.0) << what;
                         else
                             claims.mean_is(what + "gathered", gathered_values[c],
-                                           radiance_of_orders(c, first_gathered, reflections) *
+                                           furnace_radiance_of_orders(c, first_gathered, reflections) *
                                                (integrator == "path" ? 1.0 : furnace.share_found),
                                            0.02);
                     }

@@ -11,7 +11,7 @@
 namespace photonlab::test {
 namespace {
 
-const Color floor_colour(0.6f);
+const Color lit_floor_colour(0.6f);
 
 // The dim disc, as wide as it is high above the origin, fills half of the sky's cosine; the bright sphere has a million
 // times its power. Radiances are chosen so that each gives pi / 2 of irradiance, to the whole or a part of the
@@ -24,7 +24,7 @@ TEST(LightChoice, PathTracingIsUnbiasedWithPowersAMillionToOne) {
     const ColorD dim(1.0, 0.5, 0.0);
     // pi^2 a^2 Le times a million = 4 pi^2 A^2 Lb
     const double bright = 1e6 * height * height * mean_channel(dim) / (4.0 * ball_radius * ball_radius);
-    SceneDescription description = floor_seen_at_origin(floor_colour, 20.0);
+    SceneDescription description = floor_seen_at_origin(lit_floor_colour, 20.0);
     description.shapes.push_back(disk(VectorD(0.0, height, 0.0), VectorD(0, -1, 0), height, 1, dim));
     description.shapes.push_back(
         sphere(VectorD(distance * std::sin(inclination), distance * std::cos(inclination), 0.0), ball_radius, false, 1,
@@ -44,14 +44,14 @@ TEST(LightChoice, PathTracingIsUnbiasedWithPowersAMillionToOne) {
         const double from_disc = pi * dim[c] * 0.5;
         const double from_ball =
             pi * bright * (ball_radius / distance) * (ball_radius / distance) * std::cos(inclination);
-        claims.mean_is("channel " + std::to_string(c), radiance[c], floor_colour[c] / pi * (from_disc + from_ball),
+        claims.mean_is("channel " + std::to_string(c), radiance[c], lit_floor_colour[c] / pi * (from_disc + from_ball),
                        0.01);
     }
 }
 
 TEST(LightChoice, SampledAndPhotonDirectLightAreUnbiasedWithPowersAHundredToOne) {
     // The dim lamp hangs a tenth as high: both light the origin alike.
-    SceneDescription description = floor_seen_at_origin(floor_colour);
+    SceneDescription description = floor_seen_at_origin(lit_floor_colour);
     description.lights = {point_light(VectorD(0.0, 0.4, 0.0), ColorD(0.02, 0.01, 0.0)),
                           point_light(VectorD(0.0, 4.0, 0.0), ColorD(0.0, 1.0, 2.0))};
     const Scene scene = build_scene(description);
@@ -78,7 +78,7 @@ TEST(LightChoice, SampledAndPhotonDirectLightAreUnbiasedWithPowersAHundredToOne)
             double expected = 0.0;
             for (const LightDescription& any : description.lights) {
                 const auto& light = std::get<PointLightDescription>(any);
-                expected += floor_colour[c] / pi * mean_irradiance(light, c, by_photons ? radius : 0.0);
+                expected += lit_floor_colour[c] / pi * mean_irradiance(light, c, by_photons ? radius : 0.0);
             }
             claims.mean_is(name_of(direct) + ", channel " + std::to_string(c), radiance[c], expected, 0.05);
         }

@@ -16,9 +16,9 @@
 namespace photonlab::test {
 namespace {
 
-constexpr std::uint64_t seeds = 16;
+constexpr std::uint64_t material_seeds = 16;
 constexpr double disk_radius = 5.0;
-constexpr double gather_radius = 0.4;
+constexpr double material_radius = 0.4;
 
 SceneDescription in_a_surround(const Material& material, double degrees) {
     SceneDescription scene;
@@ -71,7 +71,7 @@ std::vector<Case> cases() {
 
 std::vector<double> totals(const Scene& scene, const MethodSettings& method, std::uint64_t passes) {
     std::vector<double> values;
-    for (std::uint64_t seed = 1; seed <= seeds; ++seed)
+    for (std::uint64_t seed = 1; seed <= material_seeds; ++seed)
         values.push_back(mean_total(render(scene, method, {.passes = passes, .seed = seed}).image).y);
     return values;
 }
@@ -84,17 +84,18 @@ TEST(UniformSurround, IsReflectedByItsShare) {
             const Scene scene = build_scene(in_a_surround(tried.material, degrees));
             const double expected = reflected_share(tried.material, degrees);
             claims.mean_is(what + "path", totals(scene, {.integrator = "path"}, 100), expected, 0.02);
-            claims.mean_is(what + "ppm", totals(scene, {.radius = gather_radius, .photons_per_pass = 10}, 200),
+            claims.mean_is(what + "ppm", totals(scene, {.radius = material_radius, .photons_per_pass = 10}, 200),
                            expected, 0.05);
             claims.mean_is(
                 what + "ppm with photons",
-                totals(scene, {.radius = gather_radius, .direct = DirectMode::Photons, .photons_per_pass = 20'000}, 4),
+                totals(scene, {.radius = material_radius, .direct = DirectMode::Photons, .photons_per_pass = 20'000},
+                       4),
                 expected, 0.05);
             claims.mean_is(what + "photonmapper",
                            totals(scene,
                                   {.integrator = "photonmapper",
-                                   .radius = gather_radius,
-                                   .caustic_radius = gather_radius,
+                                   .radius = material_radius,
+                                   .caustic_radius = material_radius,
                                    .direct = DirectMode::Photons,
                                    .photons_per_pass = 60'000},
                                   1),
@@ -129,7 +130,7 @@ struct LayerMeans {
 LayerMeans layer_means(const Scene& scene, const HitPoints& points, const MethodSettings& method,
                        std::uint64_t passes) {
     LayerMeans means;
-    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    for (std::uint64_t seed = 1; seed <= material_seeds; ++seed) {
         const Image image = render(scene, points, method, {.passes = passes, .seed = seed}).image;
         means.direct.push_back(mean_of(image, direct_layer).y);
         means.gathered.push_back(mean_of(image, gathered_layer).y);

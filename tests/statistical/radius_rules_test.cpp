@@ -14,13 +14,13 @@ namespace {
 
 constexpr double disc_radius = 0.5;  // initial, scene units
 constexpr double half_patch = 12.0;  // photons lie in |x|, |z| < this
-constexpr float reflectance = 0.6f;
+constexpr float patch_reflectance = 0.6f;
 constexpr int resolution = 8;  // pixels, about two radii apart
 
 /// A floor of 60 x 60 seen from straight above: 8 x 8 pixels over |x|, |z| < 8.
 Scene floor_from_above() {
     SceneDescription description;
-    description.materials = {diffuse(Color(reflectance))};
+    description.materials = {diffuse(Color(patch_reflectance))};
     description.shapes = {disk(VectorD(0.0), VectorD(0, 1, 0), 40.0, 0)};
     const double height = 20.0;
     description.camera = look_at(VectorD(0.0, height, 0.0), VectorD(0.0), resolution, resolution,
@@ -56,11 +56,11 @@ PhotonPass place_photons(const Scene& scene, const Density& density, std::uint64
     return placed;
 }
 
-/// Radiance where the density is 1: reflectance / pi times the flux of all paths over the patch's area, in the units of
-/// the program's image.
+/// Radiance where the density is 1: patch_reflectance / pi times the flux of all paths over the patch's area, in the
+/// units of the program's image.
 double unit_radiance(const Scene& scene) {
     const double area = 4.0 * half_patch * half_patch / (scene.unit_length * scene.unit_length);
-    return static_cast<double>(reflectance) / pi * scene.total_power / area;
+    return static_cast<double>(patch_reflectance) / pi * scene.total_power / area;
 }
 
 std::vector<NamedMethod> all_methods() {

@@ -19,11 +19,11 @@
 namespace photonlab::test {
 namespace {
 
-constexpr int resolution = 48;
+constexpr int room_resolution = 48;
 constexpr int block_size = 4;
 constexpr double gather_radius = 0.05;
 constexpr double smooth_bias = 0.003;
-constexpr std::uint64_t seeds = 24;
+constexpr std::uint64_t room_seeds = 24;
 
 /// Distance of a point from a parallelogram with right angles.
 double distance_to(const MeshDescription& rectangle, const VectorD& point) {
@@ -78,7 +78,7 @@ std::vector<Block> comparable_blocks(const SceneDescription& description, const 
         if (shape.radiance) lamp = &std::get<MeshDescription>(shape.geometry);
 
     // Of each pixel: the shape that it lies on and is clear of everything else, or none.
-    std::vector<std::optional<std::size_t>> clear(static_cast<std::size_t>(resolution * resolution));
+    std::vector<std::optional<std::size_t>> clear(static_cast<std::size_t>(room_resolution * room_resolution));
     std::vector<char> sees_lamp(clear.size(), 0);
     for (const HitPoint& point : hit_points.points) {
         const VectorD position = VectorD(point.position) * scene.unit_length + scene.centre;
@@ -98,13 +98,13 @@ std::vector<Block> comparable_blocks(const SceneDescription& description, const 
         sees_lamp[point.pixel] = sees_whole_lamp(scene, point, *lamp);
     }
     std::vector<Block> blocks;
-    for (int top = 0; top < resolution; top += block_size)
-        for (int left = 0; left < resolution; left += block_size) {
+    for (int top = 0; top < room_resolution; top += block_size)
+        for (int left = 0; left < room_resolution; left += block_size) {
             Block block{{}, true};
             std::set<std::optional<std::size_t>> shapes;
             for (int y = top; y < top + block_size; ++y)
                 for (int x = left; x < left + block_size; ++x) {
-                    const auto pixel = static_cast<std::uint32_t>(y * resolution + x);
+                    const auto pixel = static_cast<std::uint32_t>(y * room_resolution + x);
                     block.pixels.push_back(pixel);
                     block.sees_lamp = block.sees_lamp && sees_lamp[pixel];
                     shapes.insert(clear[pixel]);
@@ -134,13 +134,14 @@ void add_values(BlockValues& values, const std::vector<Block>& blocks, const Ima
 
 class Room : public testing::Test {
 protected:
-    /// Path tracing as references are made, half of the seeds in either half's streams: done once for all tests here.
+    /// Path tracing as references are made, half of the seeds in either half's streams: done once for all tests
+    /// here.
     static void SetUpTestSuite() {
-        description_ = new SceneDescription(room(resolution, resolution));
+        description_ = new SceneDescription(room(room_resolution, room_resolution));
         scene_ = new Scene(build_scene(*description_));
         hit_points_ = new HitPoints(trace_hit_points(*scene_, 1, 1));
         references_ = new std::vector<Image>;
-        for (std::uint64_t seed = 1; seed <= seeds; ++seed)
+        for (std::uint64_t seed = 1; seed <= room_seeds; ++seed)
             for (const RandomPurpose half : {RandomPurpose::ReferenceHalfA, RandomPurpose::ReferenceHalfB})
                 references_->push_back(render(*scene_, *hit_points_, {.integrator = "path"},
                                               {.passes = 12, .seed = seed, .path_purpose = half})
@@ -172,7 +173,7 @@ protected:
 
     static std::vector<Image> images_of(const MethodSettings& method, std::uint64_t passes) {
         std::vector<Image> images;
-        for (std::uint64_t seed = 1; seed <= seeds; ++seed)
+        for (std::uint64_t seed = 1; seed <= room_seeds; ++seed)
             images.push_back(render(*scene_, *hit_points_, method, {.passes = passes, .seed = seed}).image);
         return images;
     }

@@ -12,7 +12,7 @@ namespace photonlab::test {
 namespace {
 
 constexpr double lamp_height = 2.0;
-const ColorD lamp_intensity(3.0, 1.0, 2.0);
+const ColorD small_lamp_intensity(3.0, 1.0, 2.0);
 const Color floor_colour(0.3f, 0.6f, 0.8f);
 
 /// The channel that is looked at: all three see the same photons of one light, and their ratios are tested exactly.
@@ -21,14 +21,14 @@ constexpr double floor_reflectance = 0.6f;
 
 Scene floor_under_lamp() {
     SceneDescription scene = floor_seen_at_origin(floor_colour);
-    scene.lights = {point_light(VectorD(0.0, lamp_height, 0.0), lamp_intensity)};
+    scene.lights = {point_light(VectorD(0.0, lamp_height, 0.0), small_lamp_intensity)};
     return build_scene(scene);
 }
 
 /// Mean of the point light's irradiance over the disc of radius `radius` around the foot of its perpendicular.
 double lamp_irradiance_over_disc(double radius) {
     const double q = std::hypot(lamp_height, radius);
-    return 2.0 * lamp_intensity[channel] / (q * (q + lamp_height));
+    return 2.0 * small_lamp_intensity[channel] / (q * (q + lamp_height));
 }
 
 /// Mean of `irradiance(x, z)` over a disc around the origin: midpoints in squared radius and angle.
@@ -54,7 +54,7 @@ TEST(PointLightOverFloor, SampledDirectLightIsExact) {
         const Rendering result =
             render(scene, {.integrator = integrator, .direct_samples = 3, .photons_per_pass = 10}, {.passes = 3});
         for (int c = 0; c < 3; ++c) {
-            const double exact = floor_colour[c] / pi * lamp_intensity[c] / (lamp_height * lamp_height);
+            const double exact = floor_colour[c] / pi * small_lamp_intensity[c] / (lamp_height * lamp_height);
             EXPECT_NEAR(mean_of(result.image, direct_layer)[c], exact, 2e-6 * exact) << integrator << " channel " << c;
         }
         EXPECT_EQ(mean_of(result.image, gathered_layer), ColorD(0.0)) << integrator;
@@ -69,7 +69,8 @@ TEST(PointLightOverFloor, ThreeChannelsOfPhotonsKeepTheirRatio) {
     const ColorD radiance = mean_of(result.image, gathered_layer);
     for (int c = 0; c < 3; ++c)
         EXPECT_NEAR(radiance[c] / radiance[channel],
-                    floor_colour[c] * lamp_intensity[c] / (floor_colour[channel] * lamp_intensity[channel]), 1e-5);
+                    floor_colour[c] * small_lamp_intensity[c] / (floor_colour[channel] * small_lamp_intensity[channel]),
+                    1e-5);
 }
 
 TEST(PointLightOverFloor, PhotonMappingHasExactlyTheBiasOfItsDisc) {

@@ -7,16 +7,10 @@
 
 #include "tests/statistical/rendering.h"
 #include "tests/statistical/scenes.h"
+#include "tests/transport/same_photons.h"
 
 namespace photonlab::test {
 namespace {
-
-bool same_bits(const PhotonPass& a, const PhotonPass& b) {
-    return a.photons.size() == b.photons.size() && a.paths_emitted == b.paths_emitted && a.paths_cut == b.paths_cut &&
-           a.power_cut == b.power_cut && a.nonfinite == b.nonfinite &&
-           (a.photons.empty() ||
-            std::memcmp(a.photons.data(), b.photons.data(), a.photons.size() * sizeof(Photon)) == 0);
-}
 
 TEST(PhotonPass, HasTheSameBitsOnAnyNumberOfThreads) {
     const Scene scene = build_scene(room());

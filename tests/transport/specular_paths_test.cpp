@@ -12,6 +12,7 @@
 #include "scene/materials/dielectric.h"
 #include "tests/statistical/rendering.h"
 #include "tests/statistical/scenes.h"
+#include "tests/transport/same_photons.h"
 
 namespace photonlab::test {
 namespace {
@@ -232,11 +233,6 @@ TEST(SplitPaths, SeeALampInMirrorsWithItsDepth) {
 
 // ---------------------------------------------------------------------------------------------------------------------
 // From the lights.
-
-bool same_bits(const PhotonPass& a, const PhotonPass& b) {
-    return a.photons.size() == b.photons.size() &&
-           std::memcmp(a.photons.data(), b.photons.data(), a.photons.size() * sizeof(Photon)) == 0;
-}
 
 /// The box with both balls under a lamp.
 Scene lit_balls() {

@@ -199,17 +199,17 @@ Material read_wrapper(MaterialReader& reader) {
     return material;
 }
 
-using Kinds = std::vector<NamedKind<MaterialReader, Material>>;
+using MaterialKinds = std::vector<NamedKind<MaterialReader, Material>>;
 
 template <typename... Bsdfs, typename... Wrappers>
-Kinds kinds_of(const std::variant<Bsdfs...>*, const std::variant<Wrappers...>*) {
+MaterialKinds material_kinds(const std::variant<Bsdfs...>*, const std::variant<Wrappers...>*) {
     return {{Bsdfs::name, read_bsdf<Bsdfs>}..., {Wrappers::name, read_wrapper<Wrappers>}...};
 }
 
 }  // namespace
 
 Material read_material(const XmlElement& element, const SceneSource& source) {
-    const Kinds kinds = kinds_of(static_cast<const Bsdf*>(nullptr), static_cast<const MaterialWrapper*>(nullptr));
+    const MaterialKinds kinds = material_kinds(static_cast<const Bsdf*>(nullptr), static_cast<const MaterialWrapper*>(nullptr));
     const auto& kind = find_kind(kinds, element);
     MaterialReader reader(element, source);
     return kind.read(reader);

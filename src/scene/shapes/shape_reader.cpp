@@ -36,17 +36,17 @@ Geometry read_kind(ShapeReader& reader) {
     return geometry;
 }
 
-using Kinds = std::vector<NamedKind<ShapeReader, Geometry>>;
+using ShapeKinds = std::vector<NamedKind<ShapeReader, Geometry>>;
 
 template <typename... Analytics, typename... Meshes>
-Kinds kinds_of(const std::variant<Analytics...>*, const std::variant<Meshes...>*) {
+ShapeKinds shape_kinds(const std::variant<Analytics...>*, const std::variant<Meshes...>*) {
     return {{Analytics::name, read_kind<Analytics>}..., {Meshes::name, read_kind<Meshes>}...};
 }
 
 }  // namespace
 
 Geometry read_geometry(ShapeReader& reader) {
-    const Kinds kinds = kinds_of(static_cast<const Analytic*>(nullptr), static_cast<const Mesh*>(nullptr));
+    const ShapeKinds kinds = shape_kinds(static_cast<const Analytic*>(nullptr), static_cast<const Mesh*>(nullptr));
     return find_kind(kinds, reader.element).read(reader);
 }
 
