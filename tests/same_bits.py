@@ -38,6 +38,10 @@ METHODS = {
     "photonmapper nearest with eps": {"integrator": "photonmapper", "mode": "nearest", "k": 300, "caustic_k": 300,
                                       "kernel": "biweight", "eps": 2.0, "direct_samples": 2},
 }
+for method in METHODS.values():
+    if method["integrator"] != "path":
+        method["area"] = "disc"
+METHODS["ppm by the area that is there"] = {"integrator": "ppm", "area": "seen"}
 WIDTH, HEIGHT = 32, 24
 SIZE = ["--resolution", f"{WIDTH}x{HEIGHT}", "--samples-per-pixel", "4"]
 PASSES, PHOTONS = 5, 3000

@@ -55,7 +55,7 @@ private:
 };
 
 struct GatherAreaSettings {
-    AreaMode mode = AreaMode::Disc;
+    AreaMode mode = AreaMode::Seen;
     Kernel kernel = Kernel::Disc;
     int lines = default_area_lines;  ///< a ring of seen_area.h
 };

@@ -94,7 +94,7 @@ struct MethodSettings {
     std::optional<double> caustic_radius = std::nullopt;      ///< scene units; empty: as `radius`
     std::optional<double> caustic_max_radius = std::nullopt;  ///< scene units; empty: from default_caustic_share
     Kernel kernel = Kernel::Disc;
-    AreaMode area = AreaMode::Disc;
+    AreaMode area = AreaMode::Seen;
     int area_lines = default_area_lines;
     double eps = 0.0;
     DirectMode direct = DirectMode::Sampled;

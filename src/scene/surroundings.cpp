@@ -101,7 +101,7 @@ private:
 
     /// It scatters light on the point's side, whatever the place.
     bool takes_photons_everywhere(const Vector& normal, const Material& material) const {
-        if (needs_texture_coordinates(material)) return false;
+        if (may_be_black_by_texture(material) || has_turned_normals(material)) return false;
         const Bsdf bsdf = bsdf_at(material, Imath::V2f(0.0f), normal.dot(point_.normal) < 0.0f);
         return is_scattering(bsdf) && !is_black(bsdf);
     }

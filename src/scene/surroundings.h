@@ -35,8 +35,7 @@ struct FlatSurroundings {
 };
 
 /// Of the ball of `radius` (unit box). Empty where it is not flat, or not known to be: curved or tilted surfaces on
-/// which photons would be accepted, shapes other than triangles, textures (which may be black somewhere), smooth
-/// normals.
+/// which photons would be accepted, shapes other than triangles, textures that are black somewhere, smooth normals.
 std::optional<FlatSurroundings> flat_surroundings(const Scene& scene, const SurfaceEnd& point, double radius);
 
 /// Replaces `hits` by all surfaces that the ray crosses within `length` (unit box), nearest first, each as intersect()

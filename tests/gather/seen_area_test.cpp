@@ -386,6 +386,21 @@ TEST(IsWholeAround, NotWhereNothingIsKnown) {
     EXPECT_TRUE(is_whole_around(scene, point, 0.1));
 }
 
+TEST(IsWholeAround, OnATextureThatIsNowhereBlack) {
+    SceneDescription description = describe({floor_of_eight()});
+    const SurfaceEnd point{{0.0f, 0.0f, 0.0f}, {0, 0, 1}, {0, 0, 1}};
+    const auto is_whole_on = [&](const Texture& texture) {
+        description.materials[0].textures = {textured(&Diffuse::reflectance, std::make_shared<const Texture>(texture))};
+        return is_whole_around(build_scene(description), point, 0.1);
+    };
+    const Checkerboard tiles{.first = Color(0.0f, 0.0f, 0.4f), .second = Color(0.1f)};
+    EXPECT_TRUE(is_whole_on(tiles)) << "in no channel both, but nowhere black";
+    EXPECT_FALSE(is_whole_on(Checkerboard{.first = Color(0.0f), .second = Color(0.1f)}));
+    const auto nested = std::make_shared<const NestedTexture>(NestedTexture{tiles});
+    EXPECT_TRUE(is_whole_on(Scale{.nested = nested, .factor = Color(0.5f)}));
+    EXPECT_FALSE(is_whole_on(Scale{.nested = nested, .factor = Color(0.5f, 0.5f, 0.0f)})) << "black in its blue tiles";
+}
+
 // ---------------------------------------------------------------------------------------------------------------------
 
 TEST(Reach, EightAtOnceAreAsOneByOne) {

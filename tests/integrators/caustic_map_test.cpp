@@ -37,6 +37,7 @@ protected:
     /// Gathered layer of photonmapper with these settings.
     std::vector<Color> gathered(MethodSettings method) const {
         method.integrator = "photonmapper";
+        method.area = AreaMode::Disc;  // as the sums here divide
         method.photons_per_pass = 4000;
         return *render(scene_, hit_points_, method, {.passes = passes}).image.find(gathered_layer);
     }

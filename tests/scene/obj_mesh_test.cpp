@@ -18,7 +18,7 @@
 namespace photonlab {
 namespace {
 
-const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+const std::string square_vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 /// Meshes written from text to a folder of the test's own, which is removed afterwards.
 class ObjMeshTest : public ::testing::Test {
@@ -102,7 +102,7 @@ TEST_F(ObjMeshTest, NegativeIndicesCountBackFromTheirLine) {
 }
 
 TEST_F(ObjMeshTest, ObjectsGroupsMaterialsAndCommentsMakeOneMesh) {
-    const auto mesh = load("# a comment\nmtllib none.mtl\no first\nusemtl red#1\n" + square +
+    const auto mesh = load("# a comment\nmtllib none.mtl\no first\nusemtl red#1\n" + square_vertices +
                            "f 1 2 3 # the first\ng second part\ns 1\nf 1 3 4 # the second\no empty\n");
     EXPECT_EQ(mesh.triangles.size(), 2u);
     EXPECT_EQ(mesh.positions.size(), 4u);
@@ -129,7 +129,8 @@ TEST_F(ObjMeshTest, ComputedNormalsWeighFacesByTheirAngle) {
 
 TEST_F(ObjMeshTest, VerticesHaveTheTextureCoordinatesOfTheirCorners) {
     // A seam: position 1 has one texture coordinate in each face.
-    const auto mesh = load(square + "vt 0 0\nvt 1 0\nvt 0.25 0.75\nvt 0.5 1\nf 1/1 2/2 3/3\nf 1/4 3/3 4/-3\n", true);
+    const auto mesh =
+        load(square_vertices + "vt 0 0\nvt 1 0\nvt 0.25 0.75\nvt 0.5 1\nf 1/1 2/2 3/3\nf 1/4 3/3 4/-3\n", true);
     ASSERT_EQ(mesh.positions.size(), 5u);
     ASSERT_EQ(mesh.texture_coordinates.size(), 5u);
     const std::array<Imath::V2d, 6> expected{{{0, 0}, {1, 0}, {0.25, 0.75}, {0.5, 1}, {0.25, 0.75}, {1, 0}}};
@@ -142,7 +143,7 @@ TEST_F(ObjMeshTest, VerticesHaveTheTextureCoordinatesOfTheirCorners) {
 
 // obj.cpp of Mitsuba: index 0 is none, of texture coordinates and of normals.
 TEST_F(ObjMeshTest, WhatIsEmptyOrZeroInACornerIsNone) {
-    const std::string data = square + "vt 0.5 0.25\nvn 0 0 -1\n";
+    const std::string data = square_vertices + "vt 0.5 0.25\nvn 0 0 -1\n";
     for (const std::string corners :
          {"1 2 3", "1/ 2/ 3/", "1// 2// 3//", "1/0 2/0 3/0", "1//0 2//0 3//0", "1/0/0 2/0/0 3/0/0", "1/0/ 2//0 3"}) {
         const auto mesh = load(data + "f " + corners + "\n", false);
@@ -176,7 +177,7 @@ TEST_F(ObjMeshTest, CornersWithoutNormalsHaveThatOfTheirTriangle) {
 }
 
 TEST_F(ObjMeshTest, CornersWithoutTextureCoordinatesHaveZeroWhereOthersHaveSome) {
-    const auto mesh = load(square + "vt 0.5 0.5\nf 1/1 2/1 3/1\nf 1 3 4\n");
+    const auto mesh = load(square_vertices + "vt 0.5 0.5\nf 1/1 2/1 3/1\nf 1 3 4\n");
     ASSERT_EQ(mesh.texture_coordinates.size(), mesh.positions.size());
     EXPECT_EQ(mesh.texture_coordinates[mesh.triangles.at(0).x], Imath::V2d(0.5, 0.5));
     EXPECT_EQ(mesh.texture_coordinates[mesh.triangles.at(1).x], Imath::V2d(0.0, 0.0));
@@ -192,12 +193,13 @@ TEST_F(ObjMeshTest, AFileWithoutFacesIsAnEmptyMesh) {
 }
 
 TEST_F(ObjMeshTest, BlanksTabsAndOtherLinesChangeNothing) {
-    const auto plain = load(square + "f 1 2 3\nf 1 3 4\n");
-    for (const std::string& text : std::vector<std::string>{
-             "v\t0 0\t0  \n  v 1 0 0\t\nv 1 1 0\nv 0 1 0\nf\t1 2\t3 \t\n \tf 1  3 4   \n",
-             "mtllib a.mtl b.mtl\ng\ng a b\ns off\ns 1\nusemtl\nusemtl c\n" + square +
-                 "l 1 2\np 1\nf 1 2 3\nmg 0\nf 1 3 4\n",
-             square + "f -4 -3 -2\nf -4 3 -1", "\xef\xbb\xbf" + square + "f 1 2 3\r\n\r\nf 1 3 4\r\n"}) {
+    const auto plain = load(square_vertices + "f 1 2 3\nf 1 3 4\n");
+    for (const std::string& text :
+         std::vector<std::string>{"v\t0 0\t0  \n  v 1 0 0\t\nv 1 1 0\nv 0 1 0\nf\t1 2\t3 \t\n \tf 1  3 4   \n",
+                                  "mtllib a.mtl b.mtl\ng\ng a b\ns off\ns 1\nusemtl\nusemtl c\n" + square_vertices +
+                                      "l 1 2\np 1\nf 1 2 3\nmg 0\nf 1 3 4\n",
+                                  square_vertices + "f -4 -3 -2\nf -4 3 -1",
+                                  "\xef\xbb\xbf" + square_vertices + "f 1 2 3\r\n\r\nf 1 3 4\r\n"}) {
         const auto mesh = load(text);
         EXPECT_EQ(mesh.positions, plain.positions) << text;
         EXPECT_EQ(mesh.triangles, plain.triangles) << text;
@@ -218,7 +220,8 @@ TEST_F(ObjMeshTest, FacesHaveAnyNumberOfCorners) {
 
 TEST_F(ObjMeshTest, DegenerateFacesGiveNoNormalThatIsNotANumber) {
     for (const std::string faces : {"f 1 1 1\n", "f 1 2 2\n", "f 1 2 3\nf 1 3 2\n"})
-        for (const VectorD& normal : load(square + faces, false).normals) EXPECT_TRUE(is_finite(normal)) << faces;
+        for (const VectorD& normal : load(square_vertices + faces, false).normals)
+            EXPECT_TRUE(is_finite(normal)) << faces;
 }
 
 }  // namespace

@@ -146,6 +146,12 @@ bool may_scatter(const Material& material) {
     return in_front || (material.back && may_scatter(*material.back));
 }
 
+bool may_be_black_by_texture(const Material& material) {
+    return material.parts_look_up_textures || (material.back && may_be_black_by_texture(*material.back)) ||
+           std::any_of(material.textures.begin(), material.textures.end(),
+                       [](const TexturedColor& color) { return color.may_be_black; });
+}
+
 bool may_look_different_from_elsewhere(const Material& material) {
     const bool in_front = std::visit(
         [&]<typename B>(const B& b) {

@@ -21,12 +21,15 @@ namespace photonlab {
 struct TexturedColor {
     std::shared_ptr<const Texture> texture;
     std::function<void(Bsdf&, const Color&)> put;  ///< the colour, into its place
+    bool may_be_black = true;                      ///< somewhere
 };
 
 /// `texture` gives the colour `member` of a `Kind`.
 template <typename Kind>
 TexturedColor textured(Color Kind::*member, std::shared_ptr<const Texture> texture) {
-    return {std::move(texture), [member](Bsdf& bsdf, const Color& color) { std::get<Kind>(bsdf).*member = color; }};
+    const bool may_be_black = !(range_of(*texture).darkest > 0.0f);
+    return {std::move(texture), [member](Bsdf& bsdf, const Color& color) { std::get<Kind>(bsdf).*member = color; },
+            may_be_black};
 }
 
 /// What turns the shading normal from point to point: heights above the surface, or normals in the frame of the
@@ -221,6 +224,7 @@ bool needs_texture_coordinates(const Material& material);
 bool is_seen_from_behind(const Material& material);  ///< else it is black from there
 bool may_be_specular(const Material& material);
 bool may_scatter(const Material& material);
+bool may_be_black_by_texture(const Material& material);            ///< it, or a part of it
 bool may_look_different_from_elsewhere(const Material& material);  ///< its f, where it scatters
 
 /// True where `asked` is of anything that a composite kind may show.

@@ -29,10 +29,12 @@ void include(TextureRange& range, const Color& color) {
         range.least = std::min(range.least, color[channel]);
         range.most = std::max(range.most, color[channel]);
     }
-    if (!is_finite(color)) range = {std::nanf(""), std::nanf("")};  // which no comparison changes any more
+    range.darkest = std::min(range.darkest, max_channel(color));
+    if (!is_finite(color))
+        range = {std::nanf(""), std::nanf(""), std::nanf("")};  // which no comparison changes any more
 }
 
-constexpr TextureRange nothing{infinity, -infinity};
+constexpr TextureRange nothing{infinity, -infinity, infinity};
 
 TextureRange range_of_kind(const Bitmap& bitmap) {
     TextureRange range = nothing;
@@ -52,9 +54,10 @@ TextureRange range_of_kind(const Checkerboard& board) {
 }
 
 TextureRange range_of_kind(const Scale& scale) {
-    const TextureRange inside = scale.nested ? range_of(scale.nested->texture) : TextureRange{1.0f, 1.0f};
+    const TextureRange inside = scale.nested ? range_of(scale.nested->texture) : TextureRange{1.0f, 1.0f, 1.0f};
     TextureRange range = nothing;
     for (const float value : {inside.least, inside.most}) include(range, scale.factor * value);
+    range.darkest = inside.darkest * std::min({scale.factor.x, scale.factor.y, scale.factor.z});
     return range;
 }
 
