@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <cstring>
+#include <memory>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -15,7 +18,7 @@ namespace {
 
 /// A place along a curve in the upper half, the photon's index in the lower.
 using SortKey = std::uint64_t;
-static_assert(sort_bytes_per_photon == 2 * sizeof(SortKey));
+static_assert(sort_bytes_per_photon == sizeof(SortKey) + std::max(sizeof(SortKey), part_bytes_of_photon));
 
 std::size_t index_of(SortKey key) {
     return static_cast<std::size_t>(key & 0xffffffffu);
@@ -65,20 +68,20 @@ void sort_along_curve(const std::vector<Photon>& photons, std::span<SortKey> key
     }
 }
 
-/// Puts the photons into the order of the keys, in place: a second copy of them would be the peak of memory.
-void permute(std::vector<Photon>& photons, std::vector<SortKey>& keys) {
-    const auto source = [&](std::size_t place) { return index_of(keys[place]); };
-    for (std::size_t start = 0; start < photons.size(); ++start) {
-        const Photon first = photons[start];
-        std::size_t place = start;
-        while (source(place) != start) {
-            const std::size_t from = source(place);
-            photons[place] = photons[from];
-            keys[place] = place;
-            place = from;
-        }
-        photons[place] = first;
-        keys[place] = place;
+/// What is moved of every photon at once: plain numbers, as all of it.
+using Part = std::array<std::byte, part_bytes_of_photon>;
+static_assert(sizeof(Photon) % sizeof(Part) == 0);
+
+/// Puts the photons into the order of the keys, part by part: copied out in the new order, then back. A second copy of
+/// them all would be the peak of memory; following cycles in place needs none and misses the cache at every step.
+void permute(std::vector<Photon>& photons, const std::vector<SortKey>& keys) {
+    const std::span<std::byte> bytes = std::as_writable_bytes(std::span(photons));
+    const auto spare = std::make_unique_for_overwrite<Part[]>(photons.size());
+    for (std::size_t offset = 0; offset < sizeof(Photon); offset += sizeof(Part)) {
+        for (std::size_t i = 0; i < keys.size(); ++i)
+            std::memcpy(&spare[i], &bytes[index_of(keys[i]) * sizeof(Photon) + offset], sizeof(Part));
+        for (std::size_t i = 0; i < keys.size(); ++i)
+            std::memcpy(&bytes[i * sizeof(Photon) + offset], &spare[i], sizeof(Part));
     }
 }
 

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -15,6 +16,7 @@ namespace photonlab {
 void sort_along_curve(std::vector<Photon>& photons);
 
 /// Held at once beside each photon while they are sorted.
-inline constexpr std::uint64_t sort_bytes_per_photon = 2 * sizeof(std::uint64_t);
+inline constexpr std::size_t part_bytes_of_photon = 16;
+inline constexpr std::uint64_t sort_bytes_per_photon = sizeof(std::uint64_t) + part_bytes_of_photon;
 
 }  // namespace photonlab
