@@ -19,7 +19,7 @@ void trace_path(const Scene& scene, const PhotonSettings& settings, const Emissi
     if (!learnt) return follow_light(scene, settings, draw_emission(scene, random), random, result);
     const LearntEmission drawn = draw_emission(scene, *learnt, random);
     result.cell.push_back(drawn.cell);
-    if (!(max_channel(drawn.emission.weight) > 0.0f)) return;
+    if (drawn.emission.weight == Color(0.0f)) return;
     follow_light(scene, settings, drawn.emission, random, result);
     result.notes.path.resize(result.photons.size(), static_cast<std::uint32_t>(path));
 }

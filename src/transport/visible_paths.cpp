@@ -154,7 +154,7 @@ private:
     bool trace(Numbers& numbers) {
         traced_.photons.clear();
         const EmissionSample emission = draw_emission(scene_, numbers);
-        if (!(max_channel(emission.weight) > 0.0f)) return false;
+        if (emission.weight == Color(0.0f)) return false;
         follow_light(scene_, settings_, emission, numbers, traced_);
         pass_.result.paths_cut += std::exchange(traced_.paths_cut, 0);
         pass_.result.power_cut += std::exchange(traced_.power_cut, 0.0);
