@@ -441,8 +441,8 @@ double pixel_variance(const Scene& scene, const MethodSettings& method, std::uin
 }
 
 // What both are for. Discs of 6 x 6 pixels cover a square around the foot, and 1% of plain paths land in them, 0.04% in
-// each. The variance by learning is four times smaller at least, by chains, of which each path costs two, three times.
-// The ratios are known to a tenth.
+// each. By learning, with a first pass that emits plainly, and by chains, of which each path costs two that are traced,
+// the variance is a third at most. The ratios are known to a tenth.
 TEST(LightPaths, HaveLessNoiseWhereLittleIsSeen) {
     SceneDescription description = foot_of_light.description();
     description.camera = look_at(VectorD(0.0, -0.1, 0.3), VectorD(0.0, -0.25, 0.0), 6, 6, 16.0);
@@ -453,7 +453,7 @@ TEST(LightPaths, HaveLessNoiseWhereLittleIsSeen) {
     const double by_chains = pixel_variance(scene, visible(method), 8, 60) / plain;
     RecordProperty("ratio_by_learning", std::to_string(by_learning));
     RecordProperty("ratio_by_chains", std::to_string(by_chains));
-    EXPECT_LT(by_learning, 0.25);
+    EXPECT_LT(by_learning, 0.33);
     EXPECT_LT(by_chains, 0.33);
 }
 
