@@ -48,18 +48,21 @@ def draw(title, lights):
     style.use_for_pictures()
     columns = min(2, len(lights))
     rows = -(-len(lights) // columns)
-    figure, grid = style.pyplot.subplots(rows, columns, squeeze=False, layout="constrained", figsize=(3.2 * columns, 2.9 * rows + 0.3))
-    most = max(numpy.nanmax(times) for _, _, times in lights)
-    scale = colors.LogNorm(0.5, max(most, 1.0))
+    figure, grid = style.pyplot.subplots(rows, columns, squeeze=False, layout="constrained", figsize=(2.7 * columns + 0.9, 2.9 * rows + 0.4))
+    most = max(1.0, *(numpy.nanmax(times) for _, _, times in lights))
+    scale = colors.LogNorm(0.5, most)
     for axes, (name, square, times) in filled(grid, lights):
         mapped = axes.imshow(times, cmap=COLOURS, norm=scale, origin="lower", extent=(0, 1, 0, 1))
         axes.set_title("\n".join(textwrap.wrap(name, 40)), fontsize=7)
         axes.set_xlabel(f"{square}, first number", fontsize=7)
         axes.set_ylabel("second number", fontsize=7)
         axes.tick_params(labelsize=7)
-    bar = figure.colorbar(mapped, ax=grid, fraction=0.04)
-    bar.set_label("paths, times those of plain emission", fontsize=8)
-    figure.suptitle(title, fontsize=9.5)
+    bar = figure.colorbar(mapped, ax=grid, shrink=0.8)
+    ticks = [times for times in 2.0 ** numpy.arange(-1, 10) if times <= most]
+    bar.set_ticks(ticks, labels=[f"{times:g}" for times in ticks], fontsize=7)
+    bar.ax.minorticks_off()
+    bar.set_label("paths, times those of plain emission", fontsize=7)
+    figure.suptitle("\n".join(textwrap.wrap(title, 40 * columns)), fontsize=8)
     return figure
 
 

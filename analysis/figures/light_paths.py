@@ -46,7 +46,7 @@ def draw_errors(panels, scene, styles):
     for axes, (cost, title) in zip(panels, COSTS.items()):
         costs = gathered[cost][(gathered["pass"] > 0) & (gathered[cost] > 0)]
         if not costs.empty:
-            style.logarithmic(axes.xaxis, costs.min() / 1.2, costs.max() * 1.2)
+            style.logarithmic(axes.xaxis, costs.min() / 1.15, costs.max() * 1.15)
         axes.set_xlabel(title)
     if seen:
         style.logarithmic(panels[0].yaxis, min(seen) / 1.2, max(seen) * 1.2)
