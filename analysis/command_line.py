@@ -8,15 +8,16 @@ import sys
 import warnings
 from pathlib import Path
 
-from analysis.figures import (best_alpha, bias_variance, calibration, convergence, equal_time, extremes, gallery, grid, memory,
-                              methods, probes, radii, scaling, strip, time_to_error, tradeoff)
+from analysis.figures import (best_alpha, bias_variance, calibration, convergence, emission, equal_time, extremes, gallery, grid,
+                              light_paths, memory, methods, probes, radii, scaling, strip, time_to_error, tradeoff)
 from analysis.records.files import InputError, reason
 from analysis.report import page
 from analysis.statistics import decomposition, fits
 
 # In this order all are made of a folder: a command reads what those before it wrote.
 COMMANDS = [convergence.COMMAND, strip.COMMAND, gallery.COMMAND, decomposition.COMMAND, fits.COMMAND, bias_variance.COMMAND,
-            memory.COMMAND, best_alpha.COMMAND, methods.COMMAND, radii.COMMAND, calibration.COMMAND, grid.COMMAND, equal_time.COMMAND,
+            memory.COMMAND, best_alpha.COMMAND, methods.COMMAND, radii.COMMAND, calibration.COMMAND,
+            light_paths.COMMAND, emission.COMMAND, grid.COMMAND, equal_time.COMMAND,
             time_to_error.COMMAND, tradeoff.COMMAND, probes.COMMAND, scaling.COMMAND, extremes.COMMAND, page.COMMAND]
 
 

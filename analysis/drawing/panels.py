@@ -17,7 +17,8 @@ def filled(grid, items):
 def panels_over_legend(rows, columns, handles, caption, panel_height=1.75):
     """A grid of panels with what all share below it: the legend, then the caption in small print. Laid out in inches,
     so that nothing overlaps however many entries there are. Returns the figure and its grid of axes."""
-    legend_columns = 2 if max(len(handle.get_label()) for handle in handles) > 28 else 3
+    longest = max(len(handle.get_label()) for handle in handles)
+    legend_columns = 3 if longest <= 28 else 2 if longest <= 42 else 1
     caption_lines = textwrap.wrap(caption, 104)
     legend = 0.19 * -(-len(handles) // legend_columns) + 0.06
     below = legend + 0.15 * len(caption_lines) + 0.1

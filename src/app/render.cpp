@@ -76,6 +76,12 @@ void print_summary(const RunState& state, const RunSettings& settings, const Sce
     if (state.paths_emitted > 0)
         print_output("photons     {} stored of {} paths, {} gathered\n", state.photons_stored, state.paths_emitted,
                      state.report.photons_gathered);
+    if (state.paths_seen)
+        print_output("paths       {} traced; of the last pass's {:.3g}% were seen{}\n", state.paths_traced,
+                     100.0 * *state.paths_seen,
+                     state.mutations_accepted
+                         ? fmt::format(", and {:.3g}% of the mutations", 100.0 * *state.mutations_accepted)
+                         : "");
     if (state.report.radius_mean && state.initial_radius)
         print_output("radius      {:.6g} at first, {:.6g} at the end (mean over hit points, scene units)\n",
                      *state.initial_radius, *state.report.radius_mean);

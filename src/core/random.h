@@ -32,6 +32,7 @@ enum class RandomPurpose : std::uint8_t {
     ReferencePositionsA = 13,
     ReferencePositionsB = 14,
     SeenArea = 15,
+    VisiblePaths = 16,
 };
 
 class RandomStream {

@@ -5,6 +5,7 @@
 //     RESULTS/iterations.csv, RESULTS/merged.json    all finished runs of the experiment: merged_records.h
 //     RESULTS/runs/RUN/iterations.csv           the run's rows, appended as its passes finish
 //     RESULTS/runs/RUN/snapshots/pass-000064.exr
+//     RESULTS/runs/RUN/emission.csv             of emission that learns: what it has learnt
 //     RESULTS/runs/RUN/run.json                 written last: a folder without it is not finished
 //     RESULTS/runs/RUN/checkpoint               of a run that is not finished: what it goes on from
 //     RESULTS/probes.csv, RESULTS/runs/RUN/probes.csv    of scenes with probes: what was gathered there, pass by pass

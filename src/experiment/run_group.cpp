@@ -13,6 +13,7 @@
 #include "image/exr.h"
 #include "image/png.h"
 #include "integrators/registry.h"
+#include "record/emission_table.h"
 #include "record/merged_records.h"
 #include "record/recorder.h"
 #include "record/run_record.h"
@@ -93,7 +94,7 @@ void exchange(StateArchive& archive, OpenRun& run) {
 
 /// What a run has left elsewhere than in its rows goes, but for its checkpoint, which is set aside.
 void begin_anew(const RunFiles& files) {
-    for (const std::filesystem::path& file : {files.description, files.probes, files.snapshots})
+    for (const std::filesystem::path& file : {files.description, files.probes, files.emission, files.snapshots})
         if (!file.empty()) std::filesystem::remove_all(file);
     set_aside(files.checkpoint);
 }
@@ -164,6 +165,11 @@ void finish(const RunGroup& group, OpenRun& run, const RunState& last) {
         write_text_file(files.probes, probes);
         run.record.files["probes.csv"] = stamp_of_text(probes);
     }
+    if (!files.emission.empty() && last.emission_map) {
+        const std::string emission = emission_table(group.scene, *last.emission_map);
+        write_text_file(files.emission, emission);
+        run.record.files["emission.csv"] = stamp_of_text(emission);
+    }
     if (!files.description.empty()) {
         run.record.files["iterations.csv"] = run.recorder.stamp();
         for (std::size_t i = 0; i < run.snapshots.size(); ++i)
@@ -181,6 +187,7 @@ void finish(const RunGroup& group, OpenRun& run, const RunState& last) {
 RunFiles files_in(const std::filesystem::path& folder, const std::string& identity) {
     return {folder / "iterations.csv",
             folder / "probes.csv",
+            folder / "emission.csv",
             folder / "run.json",
             folder / "snapshots",
             [folder](std::uint64_t pass) { return folder / "snapshots" / snapshot_name(pass); },

@@ -27,6 +27,7 @@ namespace photonlab {
 struct RunFiles {
     std::filesystem::path rows;              ///< CSV
     std::filesystem::path probes = {};       ///< CSV
+    std::filesystem::path emission = {};     ///< CSV: what emission that learns has learnt
     std::filesystem::path description = {};  ///< run.json
     std::filesystem::path snapshots = {};    ///< folder of its own for them
     std::function<std::filesystem::path(std::uint64_t pass)> snapshot;

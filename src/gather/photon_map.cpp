@@ -118,9 +118,13 @@ private:
 
 }  // namespace
 
-PhotonMap::PhotonMap(std::vector<Photon> photons) {
+PhotonMap::PhotonMap(std::vector<Photon> photons, PhotonNotes notes) {
     const std::size_t given = photons.size();
     // What FLANN cannot square would cost *other* queries their photons.
+    for (std::vector<std::uint32_t>* of_photons : {&notes.path, &notes.multiplicity})
+        std::erase_if(*of_photons, [&, photon = std::size_t{0}](std::uint32_t) mutable {
+            return !is_squarable(photons[photon++].position);
+        });
     std::erase_if(photons, [](const Photon& photon) { return !is_squarable(photon.position); });
     nonfinite_ = given - photons.size();
     if (photons.empty()) return;
@@ -129,10 +133,12 @@ PhotonMap::PhotonMap(std::vector<Photon> photons) {
                          std::to_string(photons.size()));
 
     const std::uint64_t count = photons.size();
-    sort_along_curve(photons);
+    sort_along_curve(photons, notes);
     photons_ = std::move(photons);
+    notes_ = std::move(notes);
     search_ = std::make_unique<const GroupSearch>(photons_);
-    bytes_ = count * sizeof(Photon) + std::max(count * sort_bytes_per_photon, search_->bytes());
+    bytes_ = count * sizeof(Photon) + (notes_.path.size() + notes_.multiplicity.size()) * sizeof(std::uint32_t) +
+             std::max(count * sort_bytes_per_photon, search_->bytes());
 }
 
 PhotonMap::PhotonMap(PhotonMap&&) noexcept = default;

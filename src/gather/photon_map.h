@@ -88,7 +88,7 @@ class PhotonMap {
 public:
     /// Sorts and indexes the photons; single-threaded, the same result always. Photons whose position is not finite (or
     /// so far out that float32 cannot square it) are left out and counted.
-    explicit PhotonMap(std::vector<Photon> photons);
+    explicit PhotonMap(std::vector<Photon> photons, PhotonNotes notes = {});
     PhotonMap(PhotonMap&&) noexcept;
     PhotonMap& operator=(PhotonMap&&) noexcept;
     ~PhotonMap();
@@ -128,6 +128,10 @@ public:
         });
     }
 
+    /// Of a photon that was found here: its place in the map, below size(), and in the notes.
+    std::size_t index_of(const Photon& photon) const { return static_cast<std::size_t>(&photon - photons_.data()); }
+    const PhotonNotes& notes() const { return notes_; }  ///< in the order of the map
+
     std::size_t size() const { return photons_.size(); }    ///< photons that can be found
     std::uint64_t nonfinite() const { return nonfinite_; }  ///< photons left out
     std::uint64_t bytes() const { return bytes_; }          ///< most that photons, index and build held at once
@@ -145,7 +149,8 @@ private:
     /// The query's radius is the largest. Calls `take` at most once, with those that carry flux.
     NearestPhotons find_nearest(const GatherQuery& query, std::size_t k, double eps, const TakeNearest& take) const;
 
-    std::vector<Photon> photons_;                // in Morton order
+    std::vector<Photon> photons_;  // in Morton order
+    PhotonNotes notes_;
     std::unique_ptr<const GroupSearch> search_;  // over them; none without photons
     std::uint64_t nonfinite_ = 0;
     std::uint64_t bytes_ = 0;

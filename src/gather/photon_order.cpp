@@ -85,12 +85,21 @@ void permute(std::vector<Photon>& photons, const std::vector<SortKey>& keys) {
     }
 }
 
+void permute(std::vector<std::uint32_t>& notes, const std::vector<SortKey>& keys) {
+    if (notes.empty()) return;
+    std::vector<std::uint32_t> permuted(notes.size());
+    for (std::size_t place = 0; place < keys.size(); ++place) permuted[place] = notes[index_of(keys[place])];
+    notes = std::move(permuted);
+}
+
 }  // namespace
 
-void sort_along_curve(std::vector<Photon>& photons) {
+void sort_along_curve(std::vector<Photon>& photons, PhotonNotes& notes) {
     std::vector<SortKey> keys(photons.size());
     std::iota(keys.begin(), keys.end(), SortKey{0});
     sort_along_curve(photons, keys);
+    permute(notes.path, keys);
+    permute(notes.multiplicity, keys);
     permute(photons, keys);
 }
 

@@ -12,8 +12,9 @@
 namespace photonlab {
 
 /// Sorts the photons, all of them at positions that float can square, in place. Those that share a place of the curve
-/// follow a finer one of their own: a caustic may be smaller than a cell of the scene. Ties stay in their order.
-void sort_along_curve(std::vector<Photon>& photons);
+/// follow a finer one of their own: a caustic may be smaller than a cell of the scene. Ties stay in their order. The
+/// notes stay with their photons.
+void sort_along_curve(std::vector<Photon>& photons, PhotonNotes& notes);
 
 /// Held at once beside each photon while they are sorted.
 inline constexpr std::size_t part_bytes_of_photon = 16;

@@ -6,9 +6,11 @@
 
 #pragma once
 
+#include <atomic>
 #include <cassert>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/math.h"
@@ -60,9 +62,9 @@ public:
     /// The BRDF where it is a constant; else 1.
     ColorD factor() const { return glossy_ ? ColorD(1.0) : ColorD(uniform_); }
 
-    /// `weight`: the kernel's times the area's.
-    void add(const ColorD& carried, double weight) {
-        ++count_;
+    /// `weight`: the kernel's times the area's. `times`: photons that `carried` is of.
+    void add(const ColorD& carried, double weight, std::uint32_t times = 1) {
+        count_ += times;
         sum_ += carried * weight;
     }
 
@@ -115,35 +117,41 @@ struct PointGather {
     PointGather(const Scene& scene, const HitPoint& point, int max_depth, const GatherReach& reach)
         : sum(scene, point, max_depth), moments(in_plane_of_photons(scene, point), reach) {}
 
-    /// Takes a photon that the map found around the point; the density estimate is that within `squared_radius`.
-    void add(const Scene& scene, const Photon& photon, double squared_distance, double squared_radius,
-             const GatherArea& area, Kernel kernel) {
-        if (!sum.counts(photon)) return;
+    /// Takes a photon that the map found around the point, and that counts `times` times; the density estimate is that
+    /// within `squared_radius`. False when it is not accepted there.
+    bool add(const Scene& scene, const Photon& photon, std::uint32_t times, double squared_distance,
+             double squared_radius, const GatherArea& area, Kernel kernel) {
+        if (!sum.counts(photon)) return false;
         double area_weight = 1.0;
         if (!area.is_whole()) {
             const std::optional<double> weight = area.weight(scene, photon);
-            if (!weight) return;
+            if (!weight) return false;
             area_weight = *weight;
         }
-        const ColorD carried = sum.carried(photon);
+        ColorD carried = sum.carried(photon);
+        if (times > 1) carried *= static_cast<double>(times);
         if constexpr (Moments::are_none) {
-            sum.add(carried, area_weight * kernel_weight(kernel, std::min(1.0, squared_distance / squared_radius)));
+            sum.add(carried, area_weight * kernel_weight(kernel, std::min(1.0, squared_distance / squared_radius)),
+                    times);
+            return true;
         } else {
             const bool is_inside = squared_distance <= squared_radius;
             const double weight =
                 is_inside ? area_weight * kernel_weight(kernel, squared_distance / squared_radius) : 0.0;
-            if (is_inside) sum.add(carried, weight);
-            moments.add({photon, squared_distance, carried, is_inside, weight});
+            if (is_inside) sum.add(carried, weight, times);
+            moments.add({photon, times, squared_distance, carried, is_inside, weight});
+            return is_inside;
         }
     }
 };
 
 /// Everything within each hit point's own reach: what is found at hit points [range.begin, range.end), one of the
-/// blocks, in order. `order` is that of `points`; `reach_of(index, point)` is in the unit box.
+/// blocks, in order. `order` is that of `points`; `reach_of(index, point)` is in the unit box. `accepted`: Pass's.
 template <typename Moments = NoMoments, typename ReachOf>
 std::vector<PointGather<Moments>> gather_within(const PhotonMap& map, const Scene& scene, const HitPointList& points,
                                                 const SearchOrder& order, BlockRange range,
-                                                const MethodSettings& settings, const ReachOf& reach_of) {
+                                                const MethodSettings& settings, const ReachOf& reach_of,
+                                                std::span<std::uint32_t> accepted = {}) {
     const std::size_t count = range.end - range.begin;
     assert(range.begin % hit_points_per_block == 0);
     assert(count == std::min(hit_points_per_block, points.size() - range.begin));
@@ -163,13 +171,17 @@ std::vector<PointGather<Moments>> gather_within(const PhotonMap& map, const Scen
     std::vector<GatherQuery> queries;
     queries.reserve(count);
     for (const std::uint8_t place : places) queries.push_back(in_list[place]);
+    const std::span<const std::uint32_t> multiplicity = map.notes().multiplicity;
     map.within_each(
         queries,
         [&](std::size_t query, const Photon& photon, double squared_distance) {
             const std::size_t place = places[query];
             const GatherReach& reach = reaches[place];
-            gathered[place].add(scene, photon, squared_distance, reach.radius * reach.radius, reach.area,
-                                settings.kernel);
+            const std::uint32_t times = multiplicity.empty() ? 1 : multiplicity[map.index_of(photon)];
+            const bool counts = gathered[place].add(scene, photon, times, squared_distance, reach.radius * reach.radius,
+                                                    reach.area, settings.kernel);
+            if (counts && !accepted.empty())
+                std::atomic_ref(accepted[map.index_of(photon)]).fetch_add(1, std::memory_order_relaxed);
         },
         settings.eps);
     return gathered;

@@ -6,10 +6,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/files/state_archive.h"
 #include "core/random.h"
+#include "gather/accepting_discs.h"
 #include "gather/photon_map.h"
 #include "image/image.h"
 #include "integrators/settings.h"
@@ -37,6 +39,8 @@ struct Needs {
     /// Other hit points in every pass; empty: the same in all, so that the image converges to radiance at these.
     std::optional<NewPoints> new_points = std::nullopt;
     Photons photons = Photons::None;
+    bool has_own_photons = false;  ///< they follow from where it gathers, or from what it found there before: no other
+                                   ///< method can share them
     Direct direct = Direct::ByLoop;
     Passes passes = Passes::Ordered;
 };
@@ -46,7 +50,10 @@ struct Pass {
     std::uint64_t number = 1;  ///< counted from 1
     const HitPoints& points;
     const PhotonMap* photons = nullptr;  ///< with Needs::Photons::OfPass
-    std::uint64_t paths_emitted = 0;     ///< from lights, in this pass
+    double paths = 0.0;  ///< that the flux of these is divided by: those emitted, or where only seen ones are there as
+                         ///< many as had to be emitted for as many to be seen; infinite where none was
+    std::span<std::uint32_t> accepted = {};  ///< one a photon of the map, to which the method adds a 1 for every hit
+                                             ///< point that accepts it; empty: nobody asks
 };
 
 /// The photons of all passes so far, in two disjoint maps.
@@ -108,6 +115,13 @@ public:
     virtual void exchange(StateArchive& archive) = 0;
 
     virtual IntegratorReport report() const = 0;
+
+    /// Where the next take() accepts photons, asked before it with the same number and points; of methods whose photons
+    /// are paths that are seen.
+    virtual AcceptingDiscs accepting_discs(const Pass& pass) {
+        static_cast<void>(pass);
+        return {};
+    }
 
     /// Of the hit point with this index; empty for a method that gathers nothing.
     virtual std::optional<GatherState> gather_state(std::size_t hit_point) const {

@@ -24,8 +24,9 @@ struct GatherReach {
 /// A photon that was found within the larger of the two.
 struct PhotonNear {
     const Photon& photon;
+    std::uint32_t times;  ///< that it counts
     double squared_distance;
-    ColorD flux;           ///< times the BRDF, but for what FluxSum::factor() says
+    ColorD flux;           ///< of all times, times the BRDF, but for what FluxSum::factor() says
     bool is_inside;        ///< the radius
     double kernel_weight;  ///< 0 outside; times the area's
 };
@@ -77,7 +78,7 @@ public:
         const Vector offset = near.photon.position - centre_;
         const std::size_t bin = sector_of(offset.dot(frame_.tangent), offset.dot(frame_.bitangent),
                                           near.squared_distance / squared_radius_);
-        count_[bin] += 1.0;
+        count_[bin] += static_cast<double>(near.times);
         flux_[bin] += near.flux;
     }
 

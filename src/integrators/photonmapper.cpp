@@ -139,7 +139,7 @@ private:
                 query_at(context_.scene, point, search.max_radius), search.k,
                 [&](const Photon& photon, double squared_distance, double squared_radius) {
                     if (!area) area = search.areas.at(surface_end(context_.scene, point), i, std::sqrt(squared_radius));
-                    at.add(context_.scene, photon, squared_distance, squared_radius, *area, settings_.kernel);
+                    at.add(context_.scene, photon, 1, squared_distance, squared_radius, *area, settings_.kernel);
                 },
                 settings_.eps);
             search.radii[i] = std::sqrt(nearest.squared_radius);

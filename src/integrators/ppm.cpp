@@ -39,7 +39,7 @@ public:
     void take(const Pass& pass) override {
         if (passes_ == 0) begin_at(pass);
         ++passes_;
-        with_moments(error_ || rule_->wants_curvature(), rule_->wants_sectors(),
+        with_moments(wants_curvature(), rule_->wants_sectors(),
                      [&]<typename Moments>(std::type_identity<Moments>) { gather<Moments>(pass); });
         if (error_) take_pixels();
     }
@@ -67,6 +67,11 @@ public:
             report, statistics_.size(), [&](std::size_t i) { return std::sqrt(statistics_[i].squared_radius); },
             context_.scene.unit_length);
         return report;
+    }
+
+    AcceptingDiscs accepting_discs(const Pass& pass) override {
+        return discs_of_reaches(context_, settings_, pass.points.points,
+                                [&](std::size_t i, const HitPoint& point) { return reach_of(i, point, passes_ + 1); });
     }
 
     std::optional<GatherState> gather_state(std::size_t hit_point) const override {
@@ -116,7 +121,7 @@ private:
             const BlockRange range = block_range(block, statistics_.size(), hit_points_per_block);
             const std::vector<PointGather<Moments>> found = gather_within<Moments>(
                 *pass.photons, context_.scene, pass.points.points, order_, range, settings_,
-                [&](std::size_t i, const HitPoint& point) { return reach_of<Moments>(i, point); });
+                [&](std::size_t i, const HitPoint& point) { return reach_of(i, point, passes_); }, pass.accepted);
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 const PointGather<Moments>& at = found[i - range.begin];
                 update(i, at, pass);
@@ -126,13 +131,15 @@ private:
         for (const std::uint64_t count : gathered) photons_gathered_ += count;
     }
 
-    template <typename Moments>
-    GatherReach reach_of(std::size_t i, const HitPoint& point) {
+    bool wants_curvature() const { return error_ || rule_->wants_curvature(); }
+
+    /// In the pass that is number `passes` of those taken here.
+    GatherReach reach_of(std::size_t i, const HitPoint& point, std::uint64_t passes) {
         GatherReach reach{.radius = std::sqrt(statistics_[i].squared_radius)};
         reach.area = areas_.at(surface_end(context_.scene, point), i, reach.radius);
-        if constexpr (Moments::has_curvature)
+        if (wants_curvature())
             reach.bandwidth =
-                std::sqrt(squared_curvature_bandwidth(settings_.laplacian_radius, initial_squared_radius(i), passes_));
+                std::sqrt(squared_curvature_bandwidth(settings_.laplacian_radius, initial_squared_radius(i), passes));
         return reach;
     }
 
@@ -141,7 +148,7 @@ private:
     void update(std::size_t i, const PointGather<Moments>& found, const Pass& pass) {
         GatherStatistics& statistics = statistics_[i];
         const double area = pi * statistics.squared_radius;
-        const double paths = static_cast<double>(pass.paths_emitted);
+        const double paths = pass.paths;
         PassGather gathered{.pass = pass.number,
                             .passes = passes_,
                             .found = static_cast<double>(found.sum.count()),

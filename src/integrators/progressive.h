@@ -15,15 +15,21 @@ namespace photonlab {
 /// No radius shrinks below it.
 inline constexpr double smallest_squared_radius = PhotonMap::minimum_radius * PhotonMap::minimum_radius;
 
-/// What the loop has to give: passes of a blind schedule can be taken from any number on.
+/// What the loop has to give: passes of a blind schedule can be taken from any number on, as long as their photons do
+/// not follow from those of earlier ones.
 inline Needs progressive_needs(const MethodSettings& settings) {
+    const bool has_own_photons = emits_adaptively(settings) || traces_visible_paths(settings);
     return {.photons = Needs::Photons::OfPass,
-            .passes = is_blind(settings.schedule) ? Needs::Passes::Independent : Needs::Passes::Ordered};
+            .has_own_photons = has_own_photons,
+            .passes =
+                is_blind(settings.schedule) && !has_own_photons ? Needs::Passes::Independent : Needs::Passes::Ordered};
 }
 
 /// The names of what both use, after those that only one has.
 inline std::vector<std::string_view> progressive_settings(std::vector<std::string_view> own = {}) {
-    for (const std::string_view name : {"schedule",        "alpha",
+    for (const std::string_view name : {"photon_paths",    "step_rule",
+                                        "emission",        "learn_passes",
+                                        "schedule",        "alpha",
                                         "kappa",           "smallest_radius",
                                         "largest_radius",  "laplacian_radius",
                                         "test_variant",    "start",
@@ -59,8 +65,22 @@ inline double shrink_before(const RadiusRule& rule, std::uint64_t pass) {
     return shrink;
 }
 
-inline bool starts_at_nearest(const MethodSettings& settings) {
-    return settings.start == StartRadius::Nearest && tests_its_disc(settings.schedule);
+/// The discs of a pass, for Integrator::accepting_discs(): `reach_of(index, point)` is what its gather asks for.
+template <typename ReachOf>
+AcceptingDiscs discs_of_reaches(const IntegratorContext& context, const MethodSettings& settings,
+                                const HitPointList& points, const ReachOf& reach_of) {
+    std::vector<AcceptingDisc> discs(points.size());
+    std::vector<GatherArea> areas(settings.area == AreaMode::Disc ? 0 : points.size());
+    parallel_for(block_count(points.size(), hit_points_per_block), context.threads, [&](std::size_t block) {
+        const BlockRange range = block_range(block, points.size(), hit_points_per_block);
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            const HitPoint& point = points[i];
+            const GatherReach reach = reach_of(i, point);
+            discs[i] = {query_at(context.scene, point, std::max(reach.radius, reach.bandwidth)), point.camera_edges};
+            if (!areas.empty()) areas[i] = reach.area;
+        }
+    });
+    return AcceptingDiscs(context.scene, settings.max_depth, std::move(discs), std::move(areas));
 }
 
 /// The squared distance of photon number `test_photons` from the point, or that of the largest radius where there are

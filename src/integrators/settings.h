@@ -14,6 +14,7 @@
 #include "gather/kernel.h"
 #include "gather/radius_rule.h"
 #include "transport/camera_pass.h"
+#include "transport/step_rule.h"
 
 namespace photonlab {
 
@@ -37,6 +38,29 @@ inline constexpr std::array direct_mode_names{ChoiceName<DirectMode>{DirectMode:
                                               ChoiceName<DirectMode>{DirectMode::Photons, "photons"}};
 constexpr const auto& choice_names(DirectMode) {
     return direct_mode_names;
+}
+
+/// Where light paths begin.
+enum class EmissionMode {
+    Plain,     ///< lights by power, and each by what it emits
+    Adaptive,  ///< more where paths were seen in earlier passes (transport/emission_map.h)
+};
+inline constexpr std::array emission_mode_names{ChoiceName<EmissionMode>{EmissionMode::Plain, "plain"},
+                                                ChoiceName<EmissionMode>{EmissionMode::Adaptive, "adaptive"}};
+constexpr const auto& choice_names(EmissionMode) {
+    return emission_mode_names;
+}
+
+/// Which light paths leave their photons.
+enum class PhotonPathMode {
+    Independent,  ///< all
+    Visible,      ///< those that are seen, by Markov chains (transport/visible_paths.h)
+};
+inline constexpr std::array photon_path_mode_names{
+    ChoiceName<PhotonPathMode>{PhotonPathMode::Independent, "independent"},
+    ChoiceName<PhotonPathMode>{PhotonPathMode::Visible, "visible"}};
+constexpr const auto& choice_names(PhotonPathMode) {
+    return photon_path_mode_names;
 }
 
 /// Where the radius of a schedule that tests its disc begins.
@@ -73,6 +97,10 @@ struct MethodSettings {
     std::string integrator = "ppm";  ///< a name of integrator_kinds()
     GatherMode mode = GatherMode::Radius;
     ScheduleName schedule = ScheduleName::Hachisuka;
+    PhotonPathMode photon_paths = PhotonPathMode::Independent;
+    StepRule step_rule = StepRule::Logarithmic;
+    EmissionMode emission = EmissionMode::Plain;
+    int learn_passes = 16;
     double alpha = 0.7;
     double kappa = 6.0;
     double smallest_radius = 0.125;  ///< of schedule "adaptive", in initial radii
@@ -103,5 +131,21 @@ struct MethodSettings {
     double branch_cutoff = default_branch_cutoff;
     std::uint64_t photons_per_pass = 100'000;
 };
+
+/// Schedule chi-square takes photons for independent, which those of chains are not.
+inline bool traces_visible_paths(const MethodSettings& settings) {
+    return settings.photon_paths == PhotonPathMode::Visible && settings.schedule != ScheduleName::ChiSquare;
+}
+
+/// Radii that wait for the first pass's photons; chains need radii first.
+inline bool starts_at_nearest(const MethodSettings& settings) {
+    return settings.start == StartRadius::Nearest && tests_its_disc(settings.schedule) &&
+           !traces_visible_paths(settings);
+}
+
+/// Chains find what is seen by themselves.
+inline bool emits_adaptively(const MethodSettings& settings) {
+    return settings.emission == EmissionMode::Adaptive && !traces_visible_paths(settings);
+}
 
 }  // namespace photonlab

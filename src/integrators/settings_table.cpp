@@ -150,6 +150,34 @@ const std::vector<SettingField>& setting_fields() {
                                    .option = "--schedule",
                                    .meaning = "how radii shrink from pass to pass; the same alpha means something else "
                                               "in each"}),
+        line<&Settings::photon_paths>(
+            {.name = "photon_paths",
+             .option = "--photon-paths",
+             .label = "photon paths",
+             .meaning =
+                 "which light paths leave their photons: all, or those of which some hit point accepts a photon, "
+                 "by Markov chains; not with schedule chi-square, which takes photons for independent",
+             .applies = [](const Settings& settings) { return settings.schedule != ScheduleName::ChiSquare; }}),
+        line<&Settings::step_rule>({.name = "step_rule",
+                                    .option = "--step-rule",
+                                    .label = "step rule",
+                                    .meaning = "how the chains of `photon_paths` visible adapt the size of their "
+                                               "mutations between passes, towards 23.4% accepted",
+                                    .applies = traces_visible_paths}),
+        line<&Settings::emission>(
+            {.name = "emission",
+             .option = "--emission",
+             .label = "emission",
+             .meaning = "where light paths begin: lights by their power, or half of them where paths were seen in "
+                        "earlier passes; not with `photon_paths` visible",
+             .applies = [](const Settings& settings) { return !traces_visible_paths(settings); }}),
+        line<&Settings::learn_passes>({.name = "learn_passes",
+                                       .option = "--learn-passes",
+                                       .unit = "passes",
+                                       .label = "passes learnt from",
+                                       .meaning = "after which `emission` adaptive stays as it is",
+                                       .range = at_least(1),
+                                       .applies = emits_adaptively}),
         line<&Settings::alpha>(
             {.name = "alpha",
              .option = "--alpha",
@@ -198,12 +226,14 @@ const std::vector<SettingField>& setting_fields() {
                  "what schedule chi-square tests against: a uniform density, the linear one that fits best, or a "
                  "uniform one with opposite sectors pooled",
              .applies = [](const Settings& settings) { return settings.schedule == ScheduleName::ChiSquare; }}),
-        line<&Settings::start>({.name = "start",
-                                .option = "--start",
-                                .meaning =
-                                    "initial radius of schedules chi-square and f-test: as of the others, or the "
-                                    "distance of photon number `test_photons` of the first pass",
-                                .applies = is_tested}),
+        line<&Settings::start>(
+            {.name = "start",
+             .option = "--start",
+             .meaning = "initial radius of schedules chi-square and f-test: as of the others, or the "
+                        "distance of photon number `test_photons` of the first pass; not with "
+                        "`photon_paths` visible, which needs radii before photons",
+             .applies =
+                 [](const Settings& settings) { return is_tested(settings) && !traces_visible_paths(settings); }}),
         line<&Settings::test_photons>(
             {.name = "test_photons",
              .option = "--test-photons",
@@ -213,8 +243,7 @@ const std::vector<SettingField>& setting_fields() {
              .range = at_least(fewest_nearest),
              .applies =
                  [](const Settings& settings) {
-                     return settings.schedule == ScheduleName::ChiSquare ||
-                            (is_tested(settings) && settings.start == StartRadius::Nearest);
+                     return settings.schedule == ScheduleName::ChiSquare || starts_at_nearest(settings);
                  }}),
         line<&Settings::test_shrink>(
             {.name = "test_shrink",

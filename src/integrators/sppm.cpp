@@ -41,7 +41,7 @@ public:
     void take(const Pass& pass) override {
         if (passes_ == 0) begin_at(pass);
         ++passes_;
-        with_moments(error_ || rule_->wants_curvature(), rule_->wants_sectors(),
+        with_moments(wants_curvature(), rule_->wants_sectors(),
                      [&]<typename Moments>(std::type_identity<Moments>) { gather<Moments>(pass); });
         set_radii(pass.points);
     }
@@ -67,6 +67,12 @@ public:
         report.photons_gathered = photons_gathered_;
         report.bytes = pixels_ * sizeof(GatherStatistics) + rule_->bytes() + (error_ ? error_->bytes() : 0);
         return report;
+    }
+
+    AcceptingDiscs accepting_discs(const Pass& pass) override {
+        return discs_of_reaches(context_, settings_, pass.points.points, [&](std::size_t i, const HitPoint& point) {
+            return reach_of(pass, i, point, passes_ + 1);
+        });
     }
 
     /// Of the pixel that the hit point is in; the radius is that which this point would have.
@@ -136,11 +142,11 @@ private:
             const BlockRange range = block_range(block, points.size(), hit_points_per_block);
             const auto gathered = gather_within<Moments>(
                 *pass.photons, context_.scene, points, order, range, settings_,
-                [&](std::size_t i, const HitPoint& point) { return reach_of<Moments>(pass, i, point); });
+                [&](std::size_t i, const HitPoint& point) { return reach_of(pass, i, point, passes_); }, pass.accepted);
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 const PointGather<Moments>& at = gathered[i - range.begin];
                 const HitPoint point = points[i];
-                const double paths = static_cast<double>(pass.paths_emitted);
+                const double paths = pass.paths;
                 const double radius = gather_radius_at(pass.points, i, point.pixel);
                 const ColorD weight(point.weight);
                 estimates[i] = weight * at.sum.flux() / (pi * radius * radius * paths);
@@ -167,13 +173,15 @@ private:
         return std::max(radius_at(points, i, pixel), PhotonMap::minimum_radius);
     }
 
-    template <typename Moments>
-    GatherReach reach_of(const Pass& pass, std::size_t i, const HitPoint& point) const {
+    bool wants_curvature() const { return error_ || rule_->wants_curvature(); }
+
+    /// In the pass that is number `passes` of those taken here.
+    GatherReach reach_of(const Pass& pass, std::size_t i, const HitPoint& point, std::uint64_t passes) const {
         GatherReach reach{.radius = gather_radius_at(pass.points, i, point.pixel)};
         reach.area = areas_.of_pass(surface_end(context_.scene, point), i, pass.number, reach.radius);
-        if constexpr (Moments::has_curvature) {
+        if (wants_curvature()) {
             const double unit = initial_radius_at(pass.points, i);
-            reach.bandwidth = std::sqrt(squared_curvature_bandwidth(settings_.laplacian_radius, unit * unit, passes_));
+            reach.bandwidth = std::sqrt(squared_curvature_bandwidth(settings_.laplacian_radius, unit * unit, passes));
         }
         return reach;
     }

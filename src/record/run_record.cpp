@@ -113,6 +113,7 @@ Json run_json(const RunRecord& record, const Recorder& recorder, const RunState&
         {"counters",
          {{"hit_points", identity.hit_points},
           {"paths_emitted", last.paths_emitted},
+          {"paths_traced", last.paths_traced},
           {"photons_stored", last.photons_stored},
           {"photons_gathered", last.report.photons_gathered},
           {"paths_cut", last.paths_cut},

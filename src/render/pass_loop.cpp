@@ -40,16 +40,19 @@ bool can_run_together(const RunSettings& a, const RunSettings& b) {
     const auto traces = [](const RunSettings& settings) {
         return needs_of(settings.method).photons != Needs::Photons::None;
     };
-    return traces(a) && traces(b) && photons(a) == photons(b) && a.passes == b.passes && a.threads == b.threads &&
-           a.shown == b.shown && a.method.branch_cutoff == b.method.branch_cutoff;
+    const auto shares = [](const RunSettings& settings) { return !needs_of(settings.method).has_own_photons; };
+    return traces(a) && traces(b) && shares(a) && shares(b) && photons(a) == photons(b) && a.passes == b.passes &&
+           a.threads == b.threads && a.shown == b.shown && a.method.branch_cutoff == b.method.branch_cutoff;
 }
 
 PassLoop::PassLoop(const Scene& scene, const HitPoints& hit_points, const std::vector<RunSettings>& settings,
                    const LoopPurposes& purposes, const std::vector<IntegratorKind>& kinds)
     : scene_(scene),
       hit_points_(hit_points),
-      photon_settings_(photons_of(settings.at(0), purposes.photons)),
+      source_(scene, photons_of(settings.at(0), purposes.photons), settings[0].threads, settings[0].method,
+              find_integrator_kind(settings[0].method.integrator, kinds).needs(settings[0].method)),
       branch_cutoff_(settings[0].method.branch_cutoff),
+      has_blind_radii_(is_blind(settings[0].method.schedule)),
       threads_(settings[0].threads),
       positions_purpose_(purposes.positions) {
     for (const RunSettings& one : settings) {
@@ -68,6 +71,7 @@ PassLoop::PassLoop(const Scene& scene, const HitPoints& hit_points, const std::v
 }
 
 void PassLoop::take(std::uint64_t pass) {
+    make_points(pass);
     PhotonPass traced;
     if (keeps_all_photons() || is_any_due(pass, Needs::Photons::OfPass)) trace(pass, traced);
     take(pass, std::move(traced));
@@ -77,6 +81,12 @@ void PassLoop::take(std::uint64_t pass, PhotonPass traced) {
     for (Method& method : methods_) {
         if (!is_due(method, pass)) continue;
         method.state.paths_emitted += traced.paths_emitted;
+        method.state.paths_traced += traced.paths_traced;
+        if (traced.chains) {
+            method.state.paths_seen = traced.seen_share;
+            method.state.mutations_accepted = traced.chains->accepted;
+            method.state.step_size = traced.chains->step_size;
+        }
         method.state.photons_stored += traced.photons.size();
         method.state.paths_cut += traced.paths_cut;
         method.state.power_cut += traced.power_cut;
@@ -98,8 +108,11 @@ void PassLoop::take(std::uint64_t pass, PhotonPass traced) {
 }
 
 void PassLoop::trace(std::uint64_t pass, PhotonPass& traced) {
-    const StageTimes tracing =
-        timed(Stage::Trace, [&] { traced = trace_photons(scene_, photon_settings_, pass, threads_); });
+    const auto where_accepted = [&] {
+        const Method& only = methods_[0];
+        return only.integrator->accepting_discs({.number = pass, .points = points_of(only)});
+    };
+    const StageTimes tracing = timed(Stage::Trace, [&] { traced = source_.trace(pass, where_accepted); });
     for (Method& method : methods_)
         if (is_due(method, pass)) method.passes_alone += tracing;
 }
@@ -111,7 +124,7 @@ void PassLoop::make_points(std::uint64_t pass) {
         const NewPoints& kind = *first.needs.new_points;
         const StageTimes making = timed(Stage::Points, [&] {
             new_points_.emplace_back(kind, trace_new_hit_points(scene_, hit_points_.samples_per_pixel, kind,
-                                                                {photon_settings_.seed, positions_purpose_, pass},
+                                                                {source_.settings().seed, positions_purpose_, pass},
                                                                 threads_, branch_cutoff_));
         });
         for (Method& method : methods_)
@@ -177,8 +190,11 @@ void PassLoop::take(Method& method, std::uint64_t pass) {
         method.passes_alone += timed(Stage::Direct, [&] { light(method, pass); });
     }
     method.layers.end_pass();
+    std::vector<std::uint32_t> accepted(source_.is_told_of_photons() && map ? map->size() : 0);
     method.passes_alone += timed(stage_of(method.needs), [&] {
-        method.integrator->take({pass, points_of(method), map, photons_.paths_of_pass()});
+        method.integrator->take({pass, points_of(method), map, photons_.paths_of_pass(), accepted});
+        if (!photons_.cells_of_pass().empty())
+            method.state.paths_seen = source_.learn(pass, *map, accepted, photons_.cells_of_pass());
     });
     method.state.pass = pass;
     method.state.times = method.passes_alone;
@@ -242,13 +258,20 @@ Image PassLoop::image() {
 
 void PassLoop::describe(const Method& method, RunState& state) const {
     state.report = method.integrator->report();
-    state.hit_point_bytes = photonlab::hit_point_bytes(hit_points_) + state.report.bytes + method.layers.bytes();
+    state.hit_point_bytes =
+        photonlab::hit_point_bytes(hit_points_) + state.report.bytes + method.layers.bytes() + source_.bytes();
 }
 
 RunState PassLoop::state_now(std::size_t method) const {
     RunState state = methods_[method].state;
     describe(methods_[method], state);
+    state.emission_map = source_.emission_map();
     return state;
+}
+
+void PassLoop::freeze_emission(const EmissionMap& learnt) {
+    source_.freeze(learnt);
+    if (has_blind_radii_) methods_[0].needs.passes = Needs::Passes::Independent;
 }
 
 void PassLoop::exchange(std::size_t index, StateArchive& archive) {
@@ -256,6 +279,10 @@ void PassLoop::exchange(std::size_t index, StateArchive& archive) {
     RunState& state = method.state;
     archive.exchange(state.pass);
     archive.exchange(state.paths_emitted);
+    archive.exchange(state.paths_traced);
+    archive.exchange(state.paths_seen);
+    archive.exchange(state.mutations_accepted);
+    archive.exchange(state.step_size);
     archive.exchange(state.photons_stored);
     archive.exchange(state.paths_cut);
     archive.exchange(state.power_cut);
@@ -265,6 +292,7 @@ void PassLoop::exchange(std::size_t index, StateArchive& archive) {
     archive.exchange(method.passes_alone);
     method.layers.exchange(archive);
     method.integrator->exchange(archive);
+    source_.exchange(archive);
 }
 
 bool PassLoop::is_due(const Method& method, std::uint64_t pass) const {

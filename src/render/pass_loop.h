@@ -15,6 +15,7 @@
 #include "image/image.h"
 #include "integrators/registry.h"
 #include "render/loop_layers.h"
+#include "render/photon_source.h"
 #include "render/photon_supply.h"
 #include "render/stage_clock.h"
 
@@ -32,7 +33,12 @@ struct RunSettings {
 /// How far a run is: after `pass` passes.
 struct RunState {
     std::uint64_t pass = 0;
-    std::uint64_t paths_emitted = 0;  ///< from lights, over all passes; 0 for `path`
+    std::uint64_t paths_emitted = 0;   ///< from lights, over all passes; 0 for `path`
+    std::uint64_t paths_traced = 0;    ///< to find photons for these
+    std::optional<double> paths_seen;  ///< share of the last pass's emitted paths with a photon that was accepted;
+                                       ///< where photons are the method's own
+    std::optional<double> mutations_accepted;  ///< share, in the last pass; of visible paths
+    std::optional<double> step_size;           ///< of these mutations
     std::uint64_t photons_stored = 0;
     std::uint64_t paths_cut = 0;          ///< by the cap on edges
     double power_cut = 0.0;               ///< what those carried, relative to the total power, summed over paths
@@ -42,8 +48,9 @@ struct RunState {
     std::uint64_t hit_point_bytes = 0;    ///< hit points and what is kept of them from pass to pass
     StageTimes times;                     ///< stage_clock.h
     IntegratorReport report;
-    std::optional<double> initial_radius;  ///< mean over hit points before the first pass, scene units; for mode
-                                           ///< `nearest` the maximum radius
+    std::optional<double> initial_radius;     ///< mean over hit points before the first pass, scene units; for mode
+                                              ///< `nearest` the maximum radius
+    std::optional<EmissionMap> emission_map;  ///< what was learnt; only in state_now()
 };
 
 /// The random streams that a loop draws from. A reference's halves have streams of their own.
@@ -92,6 +99,10 @@ public:
     /// state() with what the method says of itself now, not at its last image.
     RunState state_now(std::size_t method) const;
 
+    /// Emits by what was learnt elsewhere, and learns no more: of a method with emission "adaptive", before its first
+    /// pass. With radii that follow nothing passes are independent then.
+    void freeze_emission(const EmissionMap& learnt);
+
     /// Writes or reads what the passes so far left of a method, but for the photons: those of all passes are traced
     /// again.
     void exchange(std::size_t method, StateArchive& archive);
@@ -123,8 +134,9 @@ private:
 
     const Scene& scene_;
     const HitPoints& hit_points_;
-    const PhotonSettings photon_settings_;
+    PhotonSource source_;
     const double branch_cutoff_;
+    const bool has_blind_radii_;
     const int threads_;
     std::vector<Method> methods_;
     PhotonSupply photons_;

@@ -7,12 +7,12 @@ void PhotonSupply::begin_pass(PhotonPass photons) {
 }
 
 void PhotonSupply::index_pass() {
-    pass_map_.emplace(std::move(pass_.photons));
+    pass_map_.emplace(std::move(pass_.photons), std::move(pass_.notes));
 }
 
 void PhotonSupply::end_pass() {
     pass_map_.reset();
-    pass_.photons = {};
+    pass_ = {};
 }
 
 void PhotonSupply::add_pass() {

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "gather/photon_map.h"
@@ -36,7 +37,9 @@ public:
     /// Frees the maps of index_all_passes(), which are large; the photons stay.
     void drop_maps_of_all_passes();
 
-    std::uint64_t paths_of_pass() const { return pass_.paths_emitted; }
+    /// See Pass::paths.
+    double paths_of_pass() const { return static_cast<double>(pass_.paths_emitted) / pass_.seen_share; }
+    std::span<const std::uint32_t> cells_of_pass() const { return pass_.cell; }
     const PhotonMap& pass_map() const { return pass_map_.value(); }
 
     /// After index_all_passes().

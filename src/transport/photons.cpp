@@ -4,8 +4,7 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
-#include "scene/emitter.h"
-#include "transport/path_length.h"
+#include "transport/light_path.h"
 
 namespace photonlab {
 
@@ -14,88 +13,15 @@ namespace {
 constexpr std::size_t block_size = 256;        // paths that a thread traces at a time
 constexpr std::size_t blocks_per_round = 128;  // then joined: still in the cache, and their memory is reused
 
-/// Asymmetry of the BSDF's adjoint under shading normals, for a photon that arrives against `arriving` and leaves along
-/// `leaving`: |arriving.ns leaving.ng| / |arriving.ng leaving.ns|. 1 on a flat surface. [Veach 1996, section 5.3]
-float adjoint_correction(const Surface& surface, const Vector& arriving, const Vector& leaving) {
-    const Vector& shading = surface.frame.normal;
-    const Vector& geometric = surface.geometric_normal;
-    if (shading == geometric) return 1.0f;
-    return std::abs(arriving.dot(shading) * leaving.dot(geometric)) /
-           std::abs(arriving.dot(geometric) * leaving.dot(shading));
-}
-
-/// What arrives at a surface.
-struct Arrival {
-    const Vector& from;  ///< unit
-    const Color& power;
-    std::uint32_t edges;
-    bool only_specular;
-};
-
-/// Leaves a photon on a surface that spreads light.
-void store(const std::optional<Surface>& surface, const Arrival& arrival, PhotonPass& result) {
-    if (!surface || !is_scattering(surface->bsdf)) return;
-    const Vector& normal = surface->frame.normal;
-    const Vector& geometric = surface->geometric_normal;
-    const Color carried = normal == geometric
-                              ? arrival.power
-                              : arrival.power * std::abs(arrival.from.dot(normal) / arrival.from.dot(geometric));
-    if (is_finite(surface->position) && is_finite(arrival.from) && is_finite(carried))
-        result.photons.push_back({.position = surface->position,
-                                  .power = carried,
-                                  .incoming = PackedDirection(arrival.from),
-                                  .normal = CoarseDirection(normal),
-                                  .edges = static_cast<std::uint16_t>(arrival.edges & 0x3fffu),
-                                  .from_back = surface->from_back,
-                                  .caustic = arrival.only_specular && arrival.edges > 1});
-    else
-        ++result.nonfinite;
-}
-
-void trace_path(const Scene& scene, const PhotonSettings& settings, RandomStream random, PhotonPass& result) {
-    const std::uint32_t emitter = choose_emitter(scene, random.next_double());
-    const Imath::V2f u_position = random.next_2d();
-    const double u_triangle = random.next_double();
-    const Imath::V2f u_direction = random.next_2d();
-    const EmissionSample emission = sample_emission(scene, emitter, u_position, u_triangle, u_direction);
-
-    Ray ray = emission.ray;
-    Color power = emission.weight;
-    bool only_specular = true;
-    // The camera's side of a path has at least one edge, so a photon may have at most max_depth - 1.
-    const std::uint32_t edge_limit =
-        settings.max_depth < 0 ? largest_path_edges : static_cast<std::uint32_t>(std::max(0, settings.max_depth - 1));
-    for (std::uint32_t edges = 1; edges <= edge_limit; ++edges) {
-        const std::optional<Hit> hit = intersect(scene, ray);
-        if (!hit) return;
-        const Vector arriving = -ray.direction;
-        const std::optional<Surface> surface = orient(scene, *hit, arriving);
-        if (edges > 1 || settings.store_direct) {
-            // Where a texture turns the normal, the path may end though a point nearby can gather the photon.
-            if (has_turned_normals(scene.materials[scene.shapes[hit->shape].material]))
-                store(orient_to_gather(scene, *hit, arriving), {arriving, power, edges, only_specular}, result);
-            else
-                store(surface, {arriving, power, edges, only_specular}, result);
-        }
-        if (!surface) return;
-        if (edges == edge_limit) break;
-
-        const std::optional<BsdfSample> bounce =
-            sample(surface->bsdf, surface->frame.to_local(arriving), Carried::Flux, random.next_2d());
-        const float survival_draw = random.next();
-        if (!bounce) return;
-        only_specular = only_specular && bounce->density == 0.0f;
-        const float survival = std::min(max_channel(bounce->weight), highest_survival);
-        if (survival_draw >= survival) return;
-        const Vector leaving = surface->frame.to_world(bounce->incoming);
-        if (!sides_agree(*surface, leaving)) return;
-        power *= bounce->weight * (adjoint_correction(*surface, arriving, leaving) / survival);
-        ray = {offset_from_surface(surface->position, surface->geometric_normal, leaving), leaving};
-    }
-    if (settings.max_depth < 0) {
-        ++result.paths_cut;
-        result.power_cut += mean_channel(ColorD(power));
-    }
+/// Traces one path, of index `path`.
+void trace_path(const Scene& scene, const PhotonSettings& settings, const EmissionMap* learnt, std::size_t path,
+                RandomStream random, PhotonPass& result) {
+    if (!learnt) return follow_light(scene, settings, draw_emission(scene, random), random, result);
+    const LearntEmission drawn = draw_emission(scene, *learnt, random);
+    result.cell.push_back(drawn.cell);
+    if (drawn.emission.weight == Color(0.0f)) return;
+    follow_light(scene, settings, drawn.emission, random, result);
+    result.notes.path.resize(result.photons.size(), static_cast<std::uint32_t>(path));
 }
 
 /// Photons of a whole pass of `blocks` blocks, when its first round found these; a little more, since memory that is
@@ -110,8 +36,13 @@ std::size_t expected_photons(const std::vector<PhotonPass>& first_round, std::si
 
 /// Empties the block but keeps its memory.
 void move_to_end(PhotonPass& pass, PhotonPass& block) {
-    pass.photons.insert(pass.photons.end(), block.photons.begin(), block.photons.end());
-    block.photons.clear();
+    const auto append = [](auto& to, auto& from) {
+        to.insert(to.end(), from.begin(), from.end());
+        from.clear();
+    };
+    append(pass.photons, block.photons);
+    append(pass.notes.path, block.notes.path);
+    append(pass.cell, block.cell);
     pass.paths_cut += std::exchange(block.paths_cut, 0);
     pass.power_cut += std::exchange(block.power_cut, 0.0);
     pass.nonfinite += std::exchange(block.nonfinite, 0);
@@ -119,9 +50,10 @@ void move_to_end(PhotonPass& pass, PhotonPass& block) {
 
 }  // namespace
 
-PhotonPass trace_photons(const Scene& scene, const PhotonSettings& settings, std::uint64_t pass, int threads) {
+PhotonPass trace_photons(const Scene& scene, const PhotonSettings& settings, std::uint64_t pass, int threads,
+                         const EmissionMap* learnt) {
     PhotonPass result;
-    result.paths_emitted = settings.paths;
+    result.paths_emitted = result.paths_traced = settings.paths;
     if (scene.emitters.empty()) return result;
 
     const std::size_t blocks = block_count(settings.paths, block_size);
@@ -132,7 +64,7 @@ PhotonPass trace_photons(const Scene& scene, const PhotonSettings& settings, std
             const BlockRange range = block_range(first + slot, settings.paths, block_size);
             RandomStreams streams(settings.seed, settings.purpose, pass);
             for (std::size_t index = range.begin; index < range.end; ++index)
-                trace_path(scene, settings, streams[index], round[slot]);
+                trace_path(scene, settings, learnt, index, streams[index], round[slot]);
         });
         if (first == 0) result.photons.reserve(expected_photons(round, blocks));
         for (std::size_t slot = 0; slot < in_round; ++slot) move_to_end(result, round[slot]);

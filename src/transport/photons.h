@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/math.h"
@@ -32,10 +33,27 @@ struct Photon {
 };
 static_assert(sizeof(Photon) == 32);
 
+/// What only some methods want of photons: a number each, in their order, or none.
+struct PhotonNotes {
+    std::vector<std::uint32_t> path = {};          ///< its path, counted from 0: where emission learns
+    std::vector<std::uint32_t> multiplicity = {};  ///< how often it counts: where paths repeat
+};
+
+/// How the Markov chains of a pass went (visible_paths.h).
+struct ChainReport {
+    std::optional<double> accepted = std::nullopt;  ///< share of mutations; empty: there were none
+    double step_size = 1.0;                         ///< of the pass
+};
+
 /// Photons of one pass, or of several passes joined.
 struct PhotonPass {
     std::vector<Photon> photons;  ///< in path order
+    PhotonNotes notes = {};
+    std::vector<std::uint32_t> cell = {};  ///< in which each path began, where emission learns (emission_map.h)
     std::uint64_t paths_emitted = 0;
+    std::uint64_t paths_traced = 0;  ///< to find these; more than emitted where some are tried in vain
+    double seen_share = 1.0;         ///< of the paths emitted, that these photons are of: b of visible_paths.h
+    std::optional<ChainReport> chains = std::nullopt;
     std::uint64_t paths_cut = 0;  ///< ended at largest_path_edges
     double power_cut = 0.0;       ///< what those still carried: mean channel, relative, summed over paths
     std::uint64_t nonfinite = 0;  ///< photons refused for a non-finite position, direction or power
@@ -51,7 +69,11 @@ struct PhotonSettings {
     bool operator==(const PhotonSettings&) const = default;
 };
 
-/// Traces pass `pass` (counted from 1). A scene without light gives no photons and still counts its paths.
-PhotonPass trace_photons(const Scene& scene, const PhotonSettings& settings, std::uint64_t pass, int threads);
+class EmissionMap;
+
+/// Traces pass `pass` (counted from 1). A scene without light gives no photons and still counts its paths. With a map
+/// light is emitted by what was learnt, and paths that carry nothing are not followed.
+PhotonPass trace_photons(const Scene& scene, const PhotonSettings& settings, std::uint64_t pass, int threads,
+                         const EmissionMap* learnt = nullptr);
 
 }  // namespace photonlab

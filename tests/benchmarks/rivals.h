@@ -132,7 +132,8 @@ private:
     };
 
     static std::vector<Photon> sorted(std::vector<Photon> photons) {
-        sort_along_curve(photons);
+        PhotonNotes none;
+        sort_along_curve(photons, none);
         return photons;
     }
 

@@ -15,7 +15,8 @@ namespace {
 TEST(PhotonOrder, HoldsEveryPhotonOnce) {
     for (const PhotonSet& set : photon_sets()) {
         std::vector<Photon> sorted = set.photons;
-        sort_along_curve(sorted);
+        PhotonNotes none;
+        sort_along_curve(sorted, none);
         ASSERT_EQ(sorted.size(), set.photons.size());
         std::vector<int> seen(sorted.size(), 0);
         for (const Photon& photon : sorted) {
@@ -30,7 +31,8 @@ TEST(PhotonOrder, LeavesThoseAtOnePointInTheirOrder) {
     std::vector<Photon> photons;
     for (std::size_t i = 0; i < 5000; ++i)
         photons.push_back(photon_at(i % 2 == 0 ? Vector(0.1f, 0.2f, 0.3f) : Vector(0.7f, 0.2f, 0.3f), i));
-    sort_along_curve(photons);
+    PhotonNotes none;
+    sort_along_curve(photons, none);
     for (std::size_t i = 0; i < 2500; ++i) {
         ASSERT_EQ(number_of(photons[i]), 2 * i);
         ASSERT_EQ(number_of(photons[2500 + i]), 2 * i + 1);

@@ -35,7 +35,8 @@ std::string cell(const Record& record, const std::string& column) {
 TEST(Records, ColumnsAreThoseOfTheContract) {
     EXPECT_EQ(
         csv_header(),
-        "schema,experiment,run,scene,integrator,mode,schedule,alpha,kappa,smallest_radius,largest_radius,"
+        "schema,experiment,run,scene,integrator,mode,schedule,photon_paths,step_rule,emission,learn_passes,alpha,kappa,"
+        "smallest_radius,largest_radius,"
         "laplacian_radius,test_variant,start,test_photons,test_shrink,test_growth,positions,branches,estimate_error,"
         "k,radius_rule,radius_initial,footprints,max_radius,"
         "caustic_k,"
@@ -43,7 +44,8 @@ TEST(Records, ColumnsAreThoseOfTheContract) {
         "direct,direct_samples,max_depth,branch_cutoff,photons_per_pass,width,height,samples_per_pixel,hit_points,seed,"
         "threads,"
         "pass,component,"
-        "paths_emitted,photons_stored,photons_gathered,seconds,cpu_seconds,seconds_trace,seconds_build,seconds_gather,"
+        "paths_emitted,paths_traced,paths_seen,mutations_accepted,step_size,photons_stored,photons_gathered,seconds,"
+        "cpu_seconds,seconds_trace,seconds_build,seconds_gather,"
         "seconds_direct,seconds_points,map_bytes,hit_point_bytes,peak_rss_mib,radius_min,radius_mean,radius_max,"
         "estimated_bias,estimated_deviation,within_50,within_90,"
         "mse,mse_unbiased,rmse,relmse,smape,bias,max_error,reference_floor,nonfinite");
@@ -56,6 +58,10 @@ TEST(Records, WhatDoesNotApplyIsEmpty) {
     const Record path{identity, state, "total", std::nullopt, 0, 1.0};
     for (const char* column : {"mode",
                                "schedule",
+                               "photon_paths",
+                               "step_rule",
+                               "emission",
+                               "learn_passes",
                                "alpha",
                                "k",
                                "radius_rule",
@@ -73,6 +79,10 @@ TEST(Records, WhatDoesNotApplyIsEmpty) {
                                "direct_samples",
                                "photons_per_pass",
                                "paths_emitted",
+                               "paths_traced",
+                               "paths_seen",
+                               "mutations_accepted",
+                               "step_size",
                                "photons_stored",
                                "photons_gathered",
                                "map_bytes",

@@ -174,9 +174,19 @@ TEST_F(Runner, OnlyMethodsWithTheSamePhotonsHitPointsAndPassesCanRunTogether) {
     EXPECT_FALSE(can_together([](RunSettings& other) { other.method.max_depth = 3; }));
     EXPECT_FALSE(can_together([](RunSettings& other) { other.method.direct = DirectMode::Photons; }));
     EXPECT_FALSE(can_together([](RunSettings& other) { other.method.branch_cutoff = 0.01; }));
+    EXPECT_FALSE(can_together([](RunSettings& other) { other.method.emission = EmissionMode::Adaptive; }));
+    EXPECT_FALSE(can_together([](RunSettings& other) { other.method.photon_paths = PhotonPathMode::Visible; }));
     EXPECT_FALSE(can_together([](RunSettings& other) { other.seed = 4; }));
     EXPECT_FALSE(can_together([](RunSettings& other) { other.passes = 7; }));
     EXPECT_FALSE(can_together([](RunSettings& other) { other.shown = {1, 6}; }));
+}
+
+// They follow from where a method gathers and from what it found.
+TEST_F(Runner, PhotonsOfAMethodsOwnAreSharedWithNone) {
+    RunSettings adaptive{MethodSettings{.emission = EmissionMode::Adaptive}, 3, 6, 1, {6}};
+    EXPECT_FALSE(can_run_together(adaptive, adaptive));
+    adaptive.method.integrator = "photonmapper";  // which does not use the setting
+    EXPECT_TRUE(can_run_together(adaptive, adaptive));
 }
 
 TEST_F(Runner, TellsWhatIsGatheredAtAHitPoint) {

@@ -1,5 +1,5 @@
 // Every way in which radii are chosen: each schedule by ppm and by sppm, and their variants. A new rule is among them,
-// in every test that asks for them, by being in the list of schedules.
+// in every test that asks for them, by being in the list of schedules. Beside them those that choose photons as well.
 
 #pragma once
 
@@ -42,6 +42,24 @@ inline std::vector<NamedMethod> methods_by_every_radius_rule(const MethodSetting
     MethodSettings estimated = base;
     estimated.estimate_error = ErrorEstimation::On;
     methods.push_back({"ppm with estimates", estimated});
+    return methods;
+}
+
+/// `base` with photons of its own.
+inline std::vector<NamedMethod> methods_of_own_photons(const MethodSettings& base) {
+    std::vector<NamedMethod> methods;
+    for (const std::string integrator : {"ppm", "sppm"})
+        for (const ScheduleName schedule : {ScheduleName::Hachisuka, ScheduleName::KnausZwicker}) {
+            const std::string name = integrator + " " + std::string(name_of(schedule));
+            MethodSettings settings = base;
+            settings.integrator = integrator;
+            settings.schedule = schedule;
+            settings.emission = EmissionMode::Adaptive;
+            methods.push_back({name + ", adaptive emission", settings});
+            settings.emission = EmissionMode::Plain;
+            settings.photon_paths = PhotonPathMode::Visible;
+            methods.push_back({name + ", visible paths", settings});
+        }
     return methods;
 }
 

@@ -68,6 +68,14 @@ k = 20
 name = "fixed"
 integrator = "photonmapper"
 [[method]]
+name = "learning"
+integrator = "ppm"
+emission = "adaptive"
+[[method]]
+name = "seen"
+integrator = "sppm"
+photon_paths = "visible"
+[[method]]
 integrator = "path"
 )";
 

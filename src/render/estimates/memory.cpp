@@ -22,6 +22,10 @@ constexpr std::uint64_t probe_paths = 10'000;
 constexpr double bytes_of_statistics = 120.0;
 // What is known of the area around one, where photons are not divided by the disc's: 600 at edges, which are a part.
 constexpr double bytes_of_area = 150.0;
+// Where a hit point accepts photons, for paths that are seen: twice while they are put into order, with boxes.
+constexpr double bytes_of_disc = 130.0;
+// Of photons of a method's own: path or multiplicity, and how often it was accepted.
+constexpr double bytes_of_notes = 8.0;
 // Layers in float and double, their sum, an error's pixels, the file in memory, the reference's halves and their mean.
 constexpr double bytes_of_pixel = 240.0;
 
@@ -66,6 +70,7 @@ double MemoryEstimator::photon_bytes(const std::vector<RunSettings>& together) {
     if (!of_pass && !of_all) return 0.0;
     const PhotonSize& size = photon_size(together[0]);
     double bytes = std::max(2.0 * size.photon_bytes, of_pass ? size.map_bytes : 0.0);
+    if (needs_of(together[0].method).has_own_photons) bytes *= 1.0 + bytes_of_notes / sizeof(Photon);
     if (of_all) bytes += (2.0 * size.photon_bytes + size.map_bytes) * static_cast<double>(together[0].passes);
     return bytes;
 }
@@ -79,6 +84,7 @@ MemoryEstimate MemoryEstimator::of(const std::vector<RunSettings>& together, std
     double held = 2.0 * points.bytes_each + methods * bytes_of_statistics;
     for (const RunSettings& one : together)
         if (one.method.area != AreaMode::Disc) held += bytes_of_area;
+    if (traces_visible_paths(together[0].method)) held += bytes_of_disc;
     MemoryEstimate estimate;
     estimate.program = resident_mebibytes();
     estimate.hit_points = margin * points.count * std::max(making, held) / mebibyte;
