@@ -5,4 +5,4 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
 ANALYSIS = ROOT / "analysis"
-sys.path.insert(0, str(ROOT))
+sys.path.insert(0, str(ANALYSIS))

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import numpy
-from analysis.figures import probes, scaling
+from photonlab.figures import probes, scaling
 from support import ensembles as made
 from support import synthetic
 from support.images import grey, write_runs

@@ -2,9 +2,9 @@
 
 import unittest
 
-from analysis.figures import best_alpha
-from analysis.records import records, tables
-from analysis.statistics import best_alphas
+from photonlab.figures import best_alpha
+from photonlab.records import records, tables
+from photonlab.statistics import best_alphas
 from support import synthetic
 from support.in_folder import InFolder
 

@@ -8,9 +8,9 @@ import unittest
 import numpy
 from matplotlib import pyplot
 
-from analysis.drawing import style
-from analysis.figures import convergence, grid
-from analysis.records.columns import BEFORE_DESCRIPTIONS
+from photonlab.drawing import style
+from photonlab.figures import convergence, grid
+from photonlab.records.columns import BEFORE_DESCRIPTIONS
 from support import ensembles as made
 from support import stamps, synthetic
 from support.in_folder import InFolder

@@ -3,8 +3,8 @@
 import math
 import unittest
 
-from analysis.records import files, methods, references
-from analysis.statistics import errors
+from photonlab.records import files, methods, references
+from photonlab.statistics import errors
 from support import synthetic
 from support.in_folder import InFolder
 

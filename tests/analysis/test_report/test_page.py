@@ -10,10 +10,10 @@ import zlib
 import numpy
 from matplotlib import pyplot
 
-from analysis.drawing import pictures
-from analysis.records.columns import before_descriptions
-from analysis.report import page
-from analysis.report.viewer import encoded
+from photonlab.drawing import pictures
+from photonlab.records.columns import before_descriptions
+from photonlab.report import page
+from photonlab.report.viewer import encoded
 from support import synthetic
 from support.images import grey, write_exr
 from support.in_folder import InFolder, run

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy
 from matplotlib import pyplot
 
-from analysis.drawing import pictures, style
-from analysis.records import images
+from photonlab.drawing import pictures, style
+from photonlab.records import images
 from support import browser, synthetic
 from support.images import layered, write_exr
 from support.in_folder import run

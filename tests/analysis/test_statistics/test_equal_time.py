@@ -4,8 +4,8 @@ import unittest
 
 import numpy
 
-from analysis.figures import equal_time as figure
-from analysis.statistics import equal_time
+from photonlab.figures import equal_time as figure
+from photonlab.statistics import equal_time
 from support import ensembles as made
 from support import synthetic
 from support.images import grey, layered, write_exr, write_runs

@@ -1,0 +1,88 @@
+"""Makes one page of a results folder: RESULTS/report.html, with tables of errors and costs, the figures, every run's
+settings, and the images themselves in a viewer that flips, wipes and subtracts them.
+
+The page is a single file without anything to load, so that it can be mailed, archived or attached to a paper. Errors
+are those of each method's last pass: RMSE is the root of the mean over seeds of `mse_unbiased`. What the folder does
+not have (figures, snapshots, a reference) is said at the top of the page.
+"""
+
+import json
+from html import escape
+from pathlib import Path
+from string import Template
+
+import numpy
+
+from photonlab.command import Command, whole_positive
+from photonlab.drawing import style
+from photonlab.records import files
+from photonlab.report.folder import derived_tables, figures, settings
+from photonlab.report.results import cost_table, distinct, error_table, facts, found, read_runs, scene_table
+from photonlab.report.viewer import seeds_left_out, viewer_scenes
+from photonlab.statistics import errors
+
+HERE = Path(__file__).parent
+
+
+def part(name):
+    """A file of the page that stands beside this one."""
+    return (HERE / name).read_text(encoding="utf-8")
+
+
+def inlined(data):
+    """JSON that no text in it can end early: `</script>` in a name is only an escape."""
+    return json.dumps(data, ensure_ascii=False).replace("<", "\\u003c")
+
+
+def section(anchor, heading, content):
+    return f'<section id="{anchor}"><h2>{heading}</h2>{content}</section>' if content else ""
+
+
+def data_of(scenes):
+    """What the viewer is given."""
+    colours = style.pyplot.get_cmap(style.DIFFERENCE_COLOURS)(numpy.linspace(0, 1, 255), bytes=True)[:, :3].tolist()
+    return inlined({"differenceColours": colours, "scenes": scenes})
+
+
+def missing_list(missing):
+    listed = "".join(f"<li>{escape(text)}</li>" for text in missing)
+    return f'<div id="missing"><p>Missing from this folder:</p><ul>{listed}</ul></div>' if missing else ""
+
+
+def page(results, seeds):
+    """The whole page as text, with images of up to `seeds` seeds a method."""
+    rows, missing, stale = results.rows, [], []
+    runs = read_runs(results, missing)
+    scenes = viewer_scenes(results, runs, missing, seeds)
+    viewer = Template(part("viewer.html")).substitute(left_out=seeds_left_out(rows, runs, seeds),
+                                                      noise=errors.noise_note(rows)) if scenes else ""
+    sections = {"derived": section("derived", "Derived tables", derived_tables(results, stale)), "viewer": viewer,
+                "figures": section("figures", "Figures", figures(results, stale)),
+                "settings": section("settings", "Settings of the runs", settings(runs))}
+    missing += [f"{name}: was not made from the records that are here now, so it is not shown." for name in sorted(stale)]
+    anchors = [("errors", "Errors and costs", True), ("derived", "Derived tables", sections["derived"]), ("images", "Images", viewer),
+               ("figures", "Figures", sections["figures"]), ("settings", "Settings", sections["settings"])]
+    experiments = ", ".join(distinct(rows["experiment"]))
+    title = " / ".join(distinct(found(run, "title") for run in runs.values())) or experiments
+    return Template(part("page.html")).substitute(
+        sections, experiments=escape(experiments), title=escape(title), style=part("page.css"), facts=facts(rows, runs),
+        missing=missing_list(missing),
+        contents=" · ".join(f'<a href="#{anchor}">{name}</a>' for anchor, name, there in anchors if there),
+        scenes=scene_table(rows, runs), results="".join(error_table(scene) + cost_table(scene, runs) for scene in results.scenes()),
+        data=data_of(scenes), script=part("page.js") + part("viewer.js"))
+
+
+def make(results, options):
+    text = page(results, options.seeds)
+    yield f"{files.replace_file(results.folder / 'report.html', text)} ({len(text) / 1e6:.1f} MB)"
+
+
+def add_options(parser):
+    parser.add_argument("--seeds", type=whole_positive, default=2, metavar="N", help="how many seeds of each method the viewer "
+                        "has images of, of those with snapshots (default: 2); the page grows with it")
+
+
+COMMAND = Command(
+    name="report", summary="all of it as one HTML page that needs nothing else", about=__doc__,
+    writes="report.html",
+    make=make, add_options=add_options)
