@@ -31,6 +31,7 @@ def last_rows(results):
     rows["method"] = rows["point"].map(dict(zip(points, results.rows["method"])))
     first = results.rows.drop_duplicates("method").set_index("method")
     rows["swept"] = rows["method"].map(first[SWEPT]).fillna("")
+    rows["integrator"] = rows["method"].map(first["integrator"])
     rows["rule"] = [rule_of(first.loc[method], results.columns) for method in rows["method"]]
     return rows
 
@@ -46,7 +47,7 @@ def relative_rows(rows):
     table = []
     for (scene, region), own in rows.groupby(["scene", "region"], sort=False):
         of_radius = own[(own["swept"] == common) | (own["swept"] == "")]
-        baseline = of_radius[of_radius["method"].str.contains("PPM") & of_radius["rule"].str.contains("hachisuka")]
+        baseline = of_radius[(of_radius["integrator"] == "ppm") & of_radius["rule"].str.contains("hachisuka")]
         if baseline.empty:
             continue
         base, base_error = baseline.iloc[0]["mse"], baseline.iloc[0]["mse_error"]

@@ -80,6 +80,7 @@ def read(results):
     require_own_folder(results, rows)
     check_settings(file, rows, described)
     rows = with_numbers(file, rows, described)
+    rows[methods.GIVEN] = methods.given_names(rows, described)
     refuse_repeated_rows(file, rows, described)
     rows["method"] = methods.method_labels(rows, described)
     return Records(results, described, rows, methods.methods_in_order(rows, described), kept_files.hash_of(data), has_stamps, by_run)
@@ -184,7 +185,7 @@ def require_radii(file, rows):
 
 
 def refuse_repeated_rows(file, rows, described):
-    repeated = rows.duplicated(["scene", *methods.settings_of(rows, described), "seed", "pass", "component"])
+    repeated = rows.duplicated(["scene", *methods.settings_of(rows, described), methods.GIVEN, "seed", "pass", "component"])
     if repeated.any():
         row = rows[repeated].iloc[0]
         raise InputError(f"{place(file, repeated)}: run {row['run']} repeats pass {row['pass']:.0f}, "
