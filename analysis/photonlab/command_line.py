@@ -8,20 +8,30 @@ import sys
 import warnings
 from pathlib import Path
 
-from photonlab.figures import (best_alpha, bias_variance, calibration, convergence, equal_time, extremes, gallery, grid, memory,
-                              methods, probes, radii, scaling, strip, time_to_error, tradeoff)
+import matplotlib
+
+from photonlab import analysed, answering, measuring, tabling
+from photonlab.command import options_of
+from photonlab.drawing import saving
+from photonlab.figures import (best_alpha, bias_variance, calibration, convergence, equal_error, equal_time, extremes, gallery, grid,
+                               memory, methods, probes, radii, scaling, spectrum, strip, time_to_error, tradeoff)
+from photonlab.records import tables
 from photonlab.records.files import InputError, reason
 from photonlab.report import page
 from photonlab.statistics import decomposition, fits
 
 # In this order all are made of a folder: a command reads what those before it wrote.
 COMMANDS = [convergence.COMMAND, strip.COMMAND, gallery.COMMAND, decomposition.COMMAND, fits.COMMAND, bias_variance.COMMAND,
-            memory.COMMAND, best_alpha.COMMAND, methods.COMMAND, radii.COMMAND, calibration.COMMAND, grid.COMMAND, equal_time.COMMAND,
-            time_to_error.COMMAND, tradeoff.COMMAND, probes.COMMAND, scaling.COMMAND, extremes.COMMAND, page.COMMAND]
+            spectrum.COMMAND, memory.COMMAND, best_alpha.COMMAND, methods.COMMAND, radii.COMMAND, calibration.COMMAND, grid.COMMAND,
+            equal_time.COMMAND, equal_error.COMMAND, time_to_error.COMMAND, tradeoff.COMMAND, probes.COMMAND, scaling.COMMAND,
+            extremes.COMMAND, measuring.COMMAND, tabling.COMMAND, answering.COMMAND, page.COMMAND]
+ALL = "analyse"          # the command that makes them
+FIGURE = "figure"        # may stand before the name of one: `photonlab figure convergence RESULTS`
 
 
 def main(arguments):
     """Does what the arguments say; returns the exit code."""
+    arguments = arguments[1:] if arguments[:1] in [[ALL], [FIGURE]] and len(arguments) > 1 else arguments
     if arguments and arguments[0] in [command.name for command in COMMANDS]:
         return answered(lambda: make(arguments))
     return answered(lambda: make_all(folder_in(arguments)))
@@ -45,42 +55,60 @@ def answered(work):
 def make(arguments):
     """One command."""
     command = next(command for command in COMMANDS if command.name == arguments[0])
-    options = parser_of(command).parse_args(arguments[1:])
-    for said in command.make(command.read(options.results), options):
+    options = options_of(command, arguments[1:])
+    results = command.read(options.results)
+    if command.selects:
+        results = results.only(options.scenes, options.methods)
+    for said in said_by(command, results, options):
         print(said, flush=True)
 
 
+def said_by(command, results, options):
+    """What a command says. Its figures and tables are written, and their names are said."""
+    for said in command.make(results, options):
+        if isinstance(said, saving.Drawn):
+            yield from saving.save(said, results, options.output, options.format, not options.no_caption)
+        elif isinstance(said, tables.Derived):
+            yield tables.write_derived(results, said)
+        else:
+            yield said
+
+
 def make_all(folder):
-    """All that a folder has."""
-    read = {}    # what each way of reading made of the folder
+    """All that a folder has, but what is there already; then the answers once more, where they are seen."""
     commands = [command for command in COMMANDS if command.can_start(folder)]
+    kept = analysed.Kept(folder)
+    read = {}    # what each way of reading made of the folder
+    answer = []
     for command in commands or COMMANDS[:1]:    # which says what is not there
         if command.read not in read:
             read[command.read] = command.read(folder)
-        if command.is_for(read[command.read]):
-            for said in command.make(read[command.read], parser_of(command).parse_args([str(folder)])):
-                print(said, flush=True)
+        results = read[command.read]
+        if not command.is_for(results):
+            continue
+        said = kept.said(command.name, results.hash)
+        if said is None:
+            said = []
+            for text in said_by(command, results, options_of(command, [str(folder)])):
+                said.append(text)
+                print(text, flush=True) if command is not answering.COMMAND else None
+            kept.keep(command.name, results.hash, said)
+        if command is answering.COMMAND:
+            answer = said
+    kept.write()
+    print(*answer, sep="\n", flush=True)
 
 
 def folder_in(arguments):
-    listed = "\n".join(f"  {command.name:16}{command.summary}" for command in COMMANDS)
+    names = "\n".join(f"  {command.name:16}{command.summary}" for command in COMMANDS)
     parser = argparse.ArgumentParser(
         prog="analysis", usage="analysis RESULTS\n       analysis COMMAND RESULTS [options]",
-        description="Draws all that a folder of results has, or with a COMMAND one figure or table.",
+        description="Draws all that a folder of results has and says which method is best, or with a COMMAND makes one figure or "
+                    "table. What is there already and of the same records is not made again.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog=f"commands:\n{listed}\n\n`analysis COMMAND --help` says what it writes and how to read it.")
+        epilog=f"commands:\n{names}\n\n`analysis COMMAND --help` says what it writes and how to read it.")
     parser.add_argument("results", metavar="RESULTS", type=Path, help="folder of an experiment's results")
     return parser.parse_args(arguments).results
-
-
-def parser_of(command):
-    first, rest = command.about.split("\n\n", 1)
-    parser = argparse.ArgumentParser(prog=f"analysis {command.name}", description=first,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter,
-                                     epilog=f"Writes {command.writes}.\n\n{rest}")
-    parser.add_argument("results", metavar="RESULTS", type=Path, help="folder of an experiment's results")
-    command.add_options(parser)
-    return parser
 
 
 def complain(message):
@@ -95,6 +123,7 @@ def end_by_signal(number, _):
 
 def run(work=lambda: main(sys.argv[1:])):
     """Does what the command line says, and ends with its exit code."""
+    matplotlib.use("Agg")    # draws to files and never opens a window
     for stream in filter(None, [sys.stdout, sys.stderr]):
         stream.reconfigure(errors="backslashreplace")    # names that are not UTF-8, and terminals that are not
     for number in [signal.SIGTERM, signal.SIGHUP, signal.SIGINT]:

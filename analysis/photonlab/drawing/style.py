@@ -4,19 +4,21 @@ that has none. So a method has a colour, a marker and a line of its own, and eac
 Colours: Okabe and Ito 2008, "Color Universal Design", with a grey in place of the yellow, which a white page swallows.
 """
 
+import functools
 import itertools
 import math
 
 import matplotlib
-
-from photonlab.records import methods
-
-matplotlib.use("Agg")    # draws to files and never opens a window
-
 import matplotlib.pyplot as pyplot
 from matplotlib import ticker
 
+from photonlab.drawing import text
+from photonlab.records import files, methods
+from photonlab.records.files import InputError
+
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#56B4E9", "#E69F00", "#8A8A8A"]
+FILLED = {"markeredgecolor": "white", "markeredgewidth": 0.5}
+HOLLOW = {"markerfacecolor": "white", "markeredgewidth": 1.0}    # every other method of a kind, so that grey tells neighbours apart
 MARKERS = ["o", "s", "^", "D", "v", "P", "X", "<", ">", "*", "p"]
 # A row an integrator, in the order in which the program lists them; in it one pattern for each of its modes or schedules.
 PATTERNS = [[(0, (5, 1.5)), (0, (5, 1.5, 1, 1.5)), (0, (5, 1.5, 1, 1.5, 1, 1.5))],
@@ -30,20 +32,72 @@ DIFFERENCE_COLOURS = "PuOr_r"    # both ends dark, zero white: in grey the size 
 FULL_WIDTH = 6.6    # inches; text of 9 points can still be read where the page shrinks it to a column
 
 
-def use():
-    pyplot.rcdefaults()
-    pyplot.rcParams.update({
-        "font.family": "sans-serif", "font.size": 9, "axes.titlesize": 9.5, "axes.labelsize": 9, "legend.fontsize": 8.5,
-        "xtick.labelsize": 8.5, "ytick.labelsize": 8.5, "axes.linewidth": 0.7, "axes.spines.top": False,
-        "axes.spines.right": False, "axes.grid": True, "grid.color": "#dddddd", "grid.linewidth": 0.5,
-        "axes.axisbelow": True, "lines.linewidth": 1.4, "lines.markersize": 5, "legend.frameon": False,
-        "savefig.dpi": 300, "pdf.fonttype": 42,
-    })
+SETTINGS = {
+    "font.family": "sans-serif", "font.size": 9, "axes.titlesize": 9.5, "axes.labelsize": 9, "legend.fontsize": 8.5,
+    "xtick.labelsize": 8.5, "ytick.labelsize": 8.5, "axes.linewidth": 0.7, "axes.spines.top": False,
+    "axes.spines.right": False, "axes.grid": True, "grid.color": "#dddddd", "grid.linewidth": 0.5,
+    "axes.axisbelow": True, "lines.linewidth": 1.4, "lines.markersize": 5, "legend.frameon": False,
+    "savefig.dpi": 300, "pdf.fonttype": 42, "figure.figsize": (FULL_WIDTH, 4.0),
+}
+# Of a figure that is given its width: it is not shrunk any more, so its text is that of captions.
+SETTINGS_AT_WIDTH = {"font.size": 7.5, "axes.titlesize": 8, "axes.labelsize": 7.5, "legend.fontsize": 7, "xtick.labelsize": 7,
+                     "ytick.labelsize": 7, "lines.linewidth": 1.1, "lines.markersize": 4}
+SMALL = 0.84          # of captions and of what stands under pictures, in sizes of text
+CAPTION = "caption"   # by which a figure's caption is found again
+MILLIMETRES = 25.4    # in an inch
 
 
-def use_for_pictures():
-    use()
-    pyplot.rcParams["axes.grid"] = False
+def drawn(draw, grid=True):
+    """Of a function that draws: its figure looks as here, and nothing else does, whatever the settings of matplotlib are around it.
+    It can be asked for a width in millimetres, and for a matplotlib style file that has the last word."""
+    @functools.wraps(draw)
+    def drawn_in_style(*arguments, width=None, style=None, **options):
+        kept = {name: value for name, value in matplotlib.rcParamsDefault.items() if not name.startswith(("backend", "interactive"))}
+        with pyplot.rc_context({**kept, **SETTINGS, "axes.grid": grid}):
+            if width:
+                pyplot.rcParams.update({**SETTINGS_AT_WIDTH, "figure.figsize": (width / MILLIMETRES, 4.0)})
+            if style:
+                pyplot.rcParams.update(settings_in(style))
+            figure = draw(*arguments, **options)
+            if figure is not None:
+                figure.draw_without_rendering()    # makes ticks, which look up their settings when they are made
+            return figure
+    return drawn_in_style
+
+
+def drawn_of_pictures(draw):
+    """The same without the lines of a grid."""
+    return drawn(draw, grid=False)
+
+
+def settings_in(file):
+    """A matplotlib style file, which has a line `name: value` a setting."""
+    for number, line in enumerate(files.read_text(file).split("\n"), 1):    # matplotlib passes over what it does not know
+        name = line.split("#")[0].split(":")[0].strip()
+        if name and name not in matplotlib.rcParams:
+            raise InputError(f"{file}:{number}: \"{name}\" is no setting of matplotlib; expected lines such as font.size: 8")
+    try:
+        return matplotlib.rc_params_from_file(file, fail_on_error=True, use_default_template=False)
+    except (ValueError, KeyError) as error:
+        raise InputError(f"{file}: is no style of matplotlib: {error}") from error
+
+
+def width():
+    """Of the figure that is being drawn, in inches."""
+    return pyplot.rcParams["figure.figsize"][0]
+
+
+def size(of):
+    """Of text, in points: "title", "legend" or "small"."""
+    return SMALL * pyplot.rcParams["font.size"] if of == "small" else pyplot.rcParams[
+        "axes.titlesize" if of == "title" else "legend.fontsize"]
+
+
+def add_caption(figure, lines, left, top):
+    """Small print at the foot of a figure; `left` and `top` are inches from its lower left corner. Nothing may stand below it: it is
+    cut off where the text of the page has it."""
+    figure.text(left / figure.get_figwidth(), top / figure.get_figheight(), "\n".join(lines), fontsize=size("small"), color="#333333",
+                va="top", linespacing=text.LINE_HEIGHT, gid=CAPTION)
 
 
 def pattern(kind, columns):
@@ -68,9 +122,10 @@ def method_styles(records):
     sweep_colours = {kind: iter(pyplot.cm.viridis([0.88 * step / (kinds.count(kind) - 1)
                                                    for step in range(kinds.count(kind))]))
                      for kind in set(kinds) if kinds.count(kind) > 4}
+    of_kind = [kinds[:place].count(kind) for place, kind in enumerate(kinds)]
     return {label: {"color": matplotlib.colors.to_hex(next(sweep_colours.get(kind, single_colours))), "marker": marker,
-                    "linestyle": pattern(kind, records.columns), "markeredgecolor": "white", "markeredgewidth": 0.5}
-            for label, kind, marker in zip(records.labels, kinds, itertools.cycle(MARKERS))}
+                    "linestyle": pattern(kind, records.columns), **(HOLLOW if before % 2 else FILLED)}
+            for label, kind, marker, before in zip(records.labels, kinds, itertools.cycle(MARKERS), of_kind)}
 
 
 def marked_places(places, most=9):

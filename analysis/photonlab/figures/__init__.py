@@ -1,1 +1,25 @@
-"""One file a figure: a function that takes records and returns a figure, and a few lines that describe its command."""
+"""One file a figure: draw() takes records and returns it, and COMMAND makes a command of it."""
+
+from photonlab.command import options_of
+from photonlab.drawing.saving import Drawn
+from photonlab.figures import (best_alpha, bias_variance, calibration, convergence, equal_error, equal_time, extremes, gallery, grid,
+                               memory, methods, probes, radii, scaling, spectrum, strip, time_to_error, tradeoff)
+from photonlab.records.files import InputError
+
+MODULES = [convergence, strip, gallery, bias_variance, spectrum, memory, best_alpha, methods, radii, calibration, grid, equal_time,
+           equal_error, time_to_error, tradeoff, probes, scaling, extremes]
+
+
+def of(kind, results, *, width=None, style=None, scenes=None, methods=None, **options):
+    """{name: figure} of records, as `analysis KIND` makes them: `options` are those of its command line, with underscores. Nothing is
+    written. `width` is in millimetres; `style` is a matplotlib style file."""
+    commands = {module.COMMAND.name: module.COMMAND for module in MODULES}
+    if kind not in commands:
+        raise InputError(f"{kind}: expected one of {', '.join(commands)}")
+    chosen = options_of(commands[kind], [str(results.folder)])
+    unknown = set(options) - set(vars(chosen))
+    if unknown:
+        raise InputError(f"{kind} has no option {min(unknown)}; it has {', '.join(vars(chosen))}")
+    vars(chosen).update(options, look={"width": width, "style": style})
+    made = commands[kind].make(results.only(scenes, methods), chosen)
+    return {said.name: said.figure for said in made if isinstance(said, Drawn)}

@@ -15,8 +15,8 @@ from matplotlib import lines, patches
 
 from photonlab.command import Command, has
 from photonlab.drawing import style
-from photonlab.drawing.panels import panels_over_legend
-from photonlab.drawing.saving import save_scenes
+from photonlab.drawing.panels import panels_over_legend, set_titles
+from photonlab.drawing.saving import drawn_of_scenes
 from photonlab.records.columns import as_number
 from photonlab.statistics import best_alphas
 
@@ -49,6 +49,7 @@ def draw_panel(axes, rows, alphas):
     axes.plot(paths, rows["best_alpha"].where(rows["candidates"].map(len) < len(alphas)), **LINE)
 
 
+@style.drawn
 def draw(rows, columns):
     """The figure of one scene's rows of best-alphas.csv; None when no alpha has a probability, which takes three groups of seeds.
     `columns` are those of the records."""
@@ -58,7 +59,6 @@ def draw(rows, columns):
         return None
     families, regions = families_of(rows, columns), list(dict.fromkeys(rows["region"]))
     component = rows["component"].iloc[0]
-    style.use()
     handles = [lines.Line2D([], [], label="best alpha", **LINE),
                patches.Patch(label="candidates (5% and more)", **BAND)]
     figure, grid = panels_over_legend(
@@ -71,21 +71,20 @@ def draw(rows, columns):
         for axes, region in zip(row, regions):
             draw_panel(axes, own[own["region"] == region], alphas)
             style.logarithmic(axes.xaxis, low / 1.5, high * 1.5, most=4)
-            axes.set_title(region, loc="right")
+            set_titles(axes, rows["scene"].iloc[0] if axes is grid[0][0] else "", region)
         row[0].set_ylabel(f"{label}\nα" if label else "α")
     for axes in grid[-1]:
         axes.set_xlabel("light paths emitted")
-    grid[0][0].set_title(rows["scene"].iloc[0], loc="left")
     return figure
 
 
-def make(results, _):
+def make(results, options):
     by_scene = best_alphas.read_best(results).groupby("scene", sort=False)
-    return save_scenes(results, "best-alpha", ((scene, draw(rows, results.columns)) for scene, rows in by_scene),
+    return drawn_of_scenes("best-alpha", ((scene, draw(rows, results.columns, **options.look)) for scene, rows in by_scene),
                        "no alpha has a probability, which takes three seeds, so there is nothing to draw")
 
 
 COMMAND = Command(
-    name="best_alpha", summary="the figure of best-alphas.csv", about=__doc__,
+    name="best_alpha", draws=True, summary="the figure of best-alphas.csv", about=__doc__,
     writes="figures/best-alpha-SCENE.png and .pdf",
     make=make, is_for=has(best_alphas.NAME))

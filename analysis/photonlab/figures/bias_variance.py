@@ -19,16 +19,15 @@ from matplotlib.transforms import blended_transform_factory
 
 from photonlab.command import Command, has
 from photonlab.drawing import style
-from photonlab.drawing.panels import panels_over_legend
-from photonlab.drawing.saving import save_scenes
+from photonlab.drawing.panels import name_row, panels_over_legend, set_titles
+from photonlab.drawing.places import AXES
+from photonlab.drawing.saving import drawn_of_scenes
 from photonlab.records import methods
 from photonlab.records.files import InputError
 from photonlab.statistics import decomposition, slopes, theory
 
 TITLES = {"variance": "variance", "squared_bias": "squared bias", "mse": "MSE"}
 ROOT_TITLES = {"variance": "√ variance", "squared_bias": "√ squared bias", "mse": "RMSE"}
-AXES = {"passes": ("pass", "pass"), "photons": ("paths_emitted", "light paths emitted"),
-        "seconds": ("seconds", "time of all passes so far (s)")}    # column and title by what is drawn against
 BAND = 1.96    # standard errors
 THEORY_LINES = {"squared_bias": {"linewidth": 0.7, "linestyle": (0, (1, 1.5)), "zorder": 1.5},
                 "edge": {"linewidth": 0.7, "linestyle": (0, (6, 3)), "zorder": 1.5}}    # by what squared bias is predicted to be
@@ -42,19 +41,18 @@ def component_to_draw(rows):
 
 def curve_of(rows, quantity, against="passes"):
     """(places, values, errors, resolved) of one point and region. What emits no photons has no place against them."""
-    column, _ = AXES[against]
-    rows = rows[rows[quantity].notna() & rows[column].notna()].sort_values("pass")
+    rows = rows[rows[quantity].notna() & rows[list(AXES[against].columns)].notna().all(axis=1)].sort_values("pass")
     values, errors = rows[quantity].to_numpy(), rows[f"{quantity}_error"].to_numpy()
-    return rows[column].to_numpy(), values, errors, values > slopes.RESOLVED * numpy.nan_to_num(errors)
+    return AXES[against].of(rows), values, errors, values > slopes.RESOLVED * numpy.nan_to_num(errors)
 
 
 def places_of(rows, passes, against):
     """Where passes are on the axis, by straight lines on logarithmic axes between the recorded ones in `rows`."""
     known = rows.drop_duplicates("pass").sort_values("pass")
-    column = known[AXES[against][0]]
-    if not len(passes) or column.isna().any():
+    places = AXES[against].of(known)
+    if not len(passes) or numpy.isnan(places).any():
         return passes
-    return numpy.exp(numpy.interp(numpy.log(passes), numpy.log(known["pass"]), numpy.log(column)))
+    return numpy.exp(numpy.interp(numpy.log(passes), numpy.log(known["pass"]), numpy.log(places)))
 
 
 def theory_of(recorded_rows, rows, component, region):
@@ -182,6 +180,7 @@ def handles_of(scene, shown, styles):
     return handles
 
 
+@style.drawn
 def draw(scene, rows, against="passes", roots=False):
     """The figure of the records of one scene and its rows of decomposition.csv; None when nothing in it is resolved."""
     titles, shape, unit = (ROOT_TITLES, numpy.sqrt, "radiance") if roots else (TITLES, lambda values: values, "radiance²")
@@ -191,43 +190,44 @@ def draw(scene, rows, against="passes", roots=False):
     shown = [row for row in shown if row]
     if not shown:
         return None
-    style.use()
     places = [place for row in shown for curve in row.all_curves() for place in curve[0]]
     any_theory = any(of_quantity for row in shown for of_quantity in row.theories.values())
     caption = notes(rows[rows["component"] == component], component, any_theory, against)
     figure, grid = panels_over_legend(len(shown), len(TITLES), handles_of(scene, shown, styles), caption)
+    scene_name = rows["scene"].iloc[0]
     for row, panels in zip(shown, grid):
         for axes, (quantity, title) in zip(panels, titles.items()):
             draw_panel(axes, row.curves[quantity], row.theories[quantity], styles, row.limits, shape)
             style.logarithmic(axes.xaxis, min(places) / 1.15, max(2 * min(places), *places) * 1.15,
                               base_two=against == "passes", most=4)
-            axes.set_title(title, loc="right")
-            axes.set_xlabel(AXES[against][1])
-        panels[0].set_ylabel(f"{row.region} ({unit})")
-    grid[0][0].set_title(rows["scene"].iloc[0], loc="left")
+            set_titles(axes, scene_name if axes is grid[0][0] else "", title)
+            axes.set_xlabel(AXES[against].title)
+        name_row(panels, f"{row.region} ({unit})")
     figure.align_ylabels()
     return figure
 
 
 def make(results, options):
     rows = decomposition.read_decomposition(results)
-    unknown = set(rows["point"]) - set(results.rows["run"].map(methods.point_of))
+    points = set(results.rows["run"].map(methods.point_of))
+    rows = rows[rows["point"].isin(points)] if results.is_part else rows
+    unknown = set(rows["point"]) - points
     if unknown:
         raise InputError(f"{results.folder / decomposition.NAME}: {min(unknown)} is not in iterations.csv; run "
                          "`analysis decomposition` again")
     of_scene = {scene.scene: scene for scene in results.scenes()}
     extra = ("-roots" if options.roots else "") + (f"-{options.against}" if options.against != "passes" else "")
-    figures = ((name, draw(of_scene[name], own, options.against, options.roots)) for name, own in rows.groupby("scene", sort=False))
-    return save_scenes(results, "bias-variance", figures, "nothing is resolved, so there is nothing to draw", extra)
+    figures = ((name, draw(of_scene[name], own, options.against, options.roots, **options.look)) for name, own in rows.groupby("scene", sort=False))
+    return drawn_of_scenes("bias-variance", figures, "nothing is resolved, so there is nothing to draw", extra)
 
 
 def add_options(parser):
-    parser.add_argument("--against", choices=AXES, default="passes", help="the horizontal axis (default: passes); photons are "
+    parser.add_argument("--against", choices=[name for name in AXES if name != "memory"], default="passes", help="the horizontal axis (default: passes); photons are "
                         "the light paths emitted")
     parser.add_argument("--roots", action="store_true", help="draw RMSE and the roots of variance and squared bias, in radiance")
 
 
 COMMAND = Command(
-    name="bias_variance", summary="the figure of decomposition.csv", about=__doc__,
+    name="bias_variance", draws=True, summary="the figure of decomposition.csv", about=__doc__,
     writes="figures/bias-variance-SCENE.png and .pdf; what is not drawn by default is in the name: bias-variance-SCENE-roots-seconds",
     make=make, is_for=has(decomposition.NAME), add_options=add_options)

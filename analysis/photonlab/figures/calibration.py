@@ -9,8 +9,8 @@ from matplotlib import lines
 
 from photonlab.command import Command
 from photonlab.drawing import style
-from photonlab.drawing.panels import filled, panels_over_legend
-from photonlab.drawing.saving import save
+from photonlab.drawing.panels import filled, panels_over_legend, set_titles
+from photonlab.drawing.saving import Drawn
 
 BOUNDS = {"within_50": 0.5, "within_90": 0.9}
 
@@ -24,8 +24,8 @@ def known_rows(results):
     return rows[(rows["within_50"].astype(str) != "") & rows["within_50"].notna()]
 
 
+@style.drawn
 def draw(results, rows):
-    style.use()
     scenes = list(dict.fromkeys(rows["scene"]))
     labels = list(dict.fromkeys(rows["method"]))
     styles = style.method_styles(results)
@@ -45,7 +45,7 @@ def draw(results, rows):
             axes.axhline(share, color="#555555", linestyle=":", linewidth=0.8)
         axes.set_xscale("log", base=2)
         axes.set_ylim(0, 1)
-        axes.set_title(scene, loc="left")
+        set_titles(axes, scene)
         axes.set_xlabel("pass")
     for panels in grid:
         panels[0].set_ylabel("share of pixels")
@@ -54,9 +54,9 @@ def draw(results, rows):
 
 def make(results, options):
     rows = known_rows(results)
-    yield from save(draw(results, rows), results, "calibration")
+    yield Drawn("calibration", draw(results, rows, **options.look))
 
 
 COMMAND = Command(
-    name="calibration", summary="whether errors that are estimated without a reference are right", about=__doc__,
+    name="calibration", draws=True, summary="whether errors that are estimated without a reference are right", about=__doc__,
     writes="figures/calibration, .png and .pdf", make=make, is_for=lambda results: not known_rows(results).empty)

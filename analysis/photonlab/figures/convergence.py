@@ -1,4 +1,5 @@
-"""Draws how error falls: RMSE against passes and against seconds, for every scene of an experiment.
+"""Draws how error falls: RMSE against passes and against seconds, for every scene of an experiment; or with --against against the
+light paths emitted or the memory of photons and hit points.
 
 A line is the root of the mean, over seeds, of the MSE: of the unbiased one where the reference has two halves, so
 that the reference's own noise drops out (E[(x-A)(x-B)] is the true MSE). Its band goes from the least to the largest
@@ -16,11 +17,15 @@ from matplotlib.transforms import blended_transform_factory
 
 from photonlab.command import Command
 from photonlab.drawing import style
-from photonlab.drawing.panels import panels_over_legend
-from photonlab.drawing.saving import save_scenes
+from photonlab.drawing.panels import name_row, panels_over_legend, set_titles
+from photonlab.drawing.places import AXES
+from photonlab.drawing.saving import drawn_of_scenes
+from photonlab.records import records
 from photonlab.statistics import errors
 
-COMPONENT_TITLES = {"total": "whole image", "gathered": "gathered light alone"}
+COMPONENT_TITLES = {"total": "whole image", "emission": "emission alone", "direct": "direct light alone",
+                    "gathered": "gathered light alone"}
+COMPONENTS, AGAINST = ["total", "gathered"], ["passes", "seconds"]    # what is drawn unless something else is asked for
 FLOOR_LINE = {"color": "#555555", "linewidth": 0.8, "linestyle": (0, (4, 3)), "zorder": 1}
 FARTHEST_FLOOR = 30.0   # a floor that many times below the least error is told, not drawn: it would flatten the curves
 
@@ -50,15 +55,17 @@ def vertical_range(curves, error, floor):
     return low / margin ** 1.5, high * margin
 
 
-def draw_panel(axes, curves, styles, horizontal, error, limits, floor):
-    """One panel: the error against `horizontal`, "pass" or "seconds"."""
+def draw_panel(axes, curves, styles, against, error, limits, floor):
+    """One panel: the error against one of AXES."""
     bottom = limits[0]
     at_bottom = blended_transform_factory(axes.transData, axes.transAxes)
     places = []
     methods_below = 0    # each has a row of marks of its own
     for label, curve in curves.items():
-        x = (curve.index if horizontal == "pass" else curve["seconds"]).to_numpy()
+        x = AXES[against].of(curve)
         x, curve = x[x > 0], curve[x > 0]
+        if not len(x):    # path tracing emits no photons
+            continue
         places += list(x)
         look = styles[label]
         if (curve["seeds"] > 1).any():
@@ -78,9 +85,9 @@ def draw_panel(axes, curves, styles, horizontal, error, limits, floor):
     if places:
         low, high = min(places), max(places)
         margin = max((high / low) ** 0.04, 1.05)
-        style.logarithmic(axes.xaxis, low / margin, high * margin, base_two=horizontal == "pass")
+        style.logarithmic(axes.xaxis, low / margin, high * margin, base_two=against == "passes")
     style.logarithmic(axes.yaxis, *limits)
-    axes.set_xlabel("pass" if horizontal == "pass" else "time of all passes so far (s)")
+    axes.set_xlabel(AXES[against].title)
 
 
 def notes(rows, error, floors):
@@ -106,10 +113,10 @@ def notes(rows, error, floors):
     return " ".join(filter(None, text))
 
 
-def panels_of(scene, metric):
+def panels_of(scene, metric, components):
     """[(component, error, floor, curves, limits)] of what can be drawn of a scene, a row each."""
     panels = []
-    for component in COMPONENT_TITLES:
+    for component in components:
         rows = scene.rows[(scene.rows["component"] == component) & (scene.rows["pass"] > 0)]
         error = errors.metric(metric) if metric else errors.rmse(rows)
         # The floor is that of a mean squared error.
@@ -121,13 +128,14 @@ def panels_of(scene, metric):
     return panels
 
 
-def draw(scene, metric=None):
-    """The figure of the records of one scene; None when nothing in it can be drawn. `metric` is the column of one, if it is not RMSE
-    that is to be drawn."""
-    styles, panels = style.method_styles(scene), panels_of(scene, metric)
+@style.drawn
+def draw(scene, metric=None, components=COMPONENTS, against=AGAINST):
+    """The figure of the records of one scene, a row a component and a column an axis; None when nothing in it can be drawn. `metric`
+    is the name of one, if it is not RMSE that is to be drawn."""
+    metric = errors.metric_named(scene.columns, metric) if metric else None
+    styles, panels = style.method_styles(scene), panels_of(scene, metric, components)
     if not panels:
         return None
-    style.use()
     drawn = [label for label in scene.labels if any(label in curves for *_, curves, _ in panels)]
     hidden_floors = {component: floor for component, _, floor, _, (low, _) in panels if 0 < floor < low}
     handles = [lines.Line2D([], [], label=label, **styles[label]) for label in drawn]
@@ -137,28 +145,32 @@ def draw(scene, metric=None):
         handles.append(lines.Line2D([], [], label="below resolution (≤ 0)", color="#555555", **style.BELOW_MARK))
     caption = notes(scene.rows[scene.rows["pass"] > 0], panels[0][1], hidden_floors)
 
-    figure, grid = panels_over_legend(len(panels), 2, handles, caption)
-    for (component, error, floor, curves, limits), (left, right) in zip(panels, grid):
-        draw_panel(left, curves, styles, "pass", error, limits, floor)
-        draw_panel(right, curves, styles, "seconds", error, limits, floor)
-        left.set_ylabel(error.axis)
-        left.set_title(f"{scene.scene}: {COMPONENT_TITLES[component]}", loc="left")
+    figure, grid = panels_over_legend(len(panels), len(against), handles, caption)
+    for (component, error, floor, curves, limits), row in zip(panels, grid):
+        for axes, horizontal in zip(row, against):
+            draw_panel(axes, curves, styles, horizontal, error, limits, floor)
+        name_row(row, error.axis)
+        set_titles(row[0], f"{scene.scene}: {COMPONENT_TITLES[component]}")
     return figure
 
 
 def make(results, options):
-    metric = errors.metric_named(results.columns, options.metric) if options.metric else None
     nothing = "no errors were recorded (was there a reference?), so no convergence plot"
-    return save_scenes(results, "convergence", ((scene.scene, draw(scene, metric)) for scene in results.scenes()), nothing,
-                       f"-{options.metric}" if options.metric else "")
+    figures = ((scene.scene, draw(scene, options.metric, options.components, options.against, **options.look))
+               for scene in results.scenes())
+    return drawn_of_scenes("convergence", figures, nothing, f"-{options.metric}" if options.metric else "")
 
 
 def add_options(parser):
+    parser.add_argument("--components", choices=records.COMPONENTS, nargs="+", default=COMPONENTS, help="which light, a row each "
+                        "(default: total gathered)")
+    parser.add_argument("--against", choices=AXES, nargs="+", default=AGAINST, help="horizontal axes, a column each (default: passes "
+                        "seconds)")
     parser.add_argument("--metric", metavar="COLUMN", help="a metric of iterations.csv, relmse for instance (default: RMSE)")
 
 
 COMMAND = Command(
-    name="convergence", about=__doc__,
+    name="convergence", draws=True, about=__doc__,
     summary="RMSE against passes and against seconds, for every scene; --metric draws another error",
     writes="figures/convergence-SCENE.png and .pdf (convergence-SCENE-METRIC for another metric)",
     make=make, add_options=add_options)

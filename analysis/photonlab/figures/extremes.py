@@ -24,7 +24,7 @@ from matplotlib import lines
 from photonlab.command import Command
 from photonlab.drawing import style
 from photonlab.drawing.panels import panels_over_legend
-from photonlab.drawing.saving import save
+from photonlab.drawing.saving import Drawn
 from photonlab.records import files, images, records, tables
 from photonlab.records.columns import as_number
 from photonlab.records.files import InputError
@@ -180,9 +180,9 @@ def looks_of(rows, columns):
     return {name: {**look, "color": colour} for (name, look), colour in zip(looks.items(), itertools.cycle(style.COLOURS))}
 
 
+@style.drawn
 def draw(rows, looks):
     """The figure of rows of the table."""
-    style.use()
     handles = [lines.Line2D([], [], **look) for look in looks.values()]
     handles.append(lines.Line2D([], [], color="#D55E00", linewidth=0.8, linestyle=(0, (4, 2)), label="0.1%"))
     figure, grid = panels_over_legend(
@@ -230,9 +230,9 @@ def make(results, options):
     looks = looks_of(rows, results.columns)
     shrinking = set(results.rows["integrator"][results.rows["alpha"] != ""])
     yield from plain_answers(found, looks, shrinking) + statements(rows, looks)
-    yield tables.write_derived(results, NAME, COLUMNS, [dict(zip(COLUMNS, (axis, f"{value:.8g}", method, f"{error:.3g}")))
+    yield tables.Derived(NAME, COLUMNS, [dict(zip(COLUMNS, (axis, f"{value:.8g}", method, f"{error:.3g}")))
                                                         for axis, value, method, error in rows])
-    yield from save(draw(rows, looks), results, "extremes")
+    yield Drawn("extremes", draw(rows, looks, **options.look))
 
 
 def add_options(parser):
@@ -241,6 +241,6 @@ def add_options(parser):
 
 
 COMMAND = Command(
-    name="extremes", summary="where the answer stops being right, of two folders of results", about=__doc__,
+    name="extremes", draws=True, summary="where the answer stops being right, of two folders of results", about=__doc__,
     writes="extremes.csv and figures/extremes.png and .pdf, both in RESULTS",
     make=make, is_for=lambda results: False, add_options=add_options)    # it wants two folders

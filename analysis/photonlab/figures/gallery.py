@@ -11,7 +11,7 @@ import numpy
 
 from photonlab.command import Command, positive
 from photonlab.drawing import pictures, style
-from photonlab.drawing.saving import save
+from photonlab.drawing.saving import Drawn
 from photonlab.records import images, references
 from photonlab.records.files import InputError
 from photonlab.statistics import errors
@@ -66,9 +66,9 @@ def collect(scene):
     return found
 
 
+@style.drawn_of_pictures
 def draw(scenes, given_exposure, note):
     """The figure of scenes' rows, with a note in small print below."""
-    style.use_for_pictures()
     passes = sorted({number for scene in scenes for _, shown in scene.methods for number in shown})
     has_reference = any(scene.reference is not None for scene in scenes)
     columns = len(passes) + has_reference
@@ -112,7 +112,7 @@ def make(results, options):
     scenes = [scene for scene in scenes if scene.methods]
     if not scenes:
         raise InputError(f"{results.folder}: no snapshots; expected some in the experiment file")
-    yield from save(draw(scenes, options.exposure, errors.noise_note(results.rows)), results, "gallery")
+    yield Drawn("gallery", draw(scenes, options.exposure, errors.noise_note(results.rows), **options.look))
 
 
 def add_options(parser):
@@ -121,6 +121,6 @@ def add_options(parser):
 
 
 COMMAND = Command(
-    name="gallery", summary="scenes by recorded passes, PPM above PM", about=__doc__,
+    name="gallery", draws=True, summary="scenes by recorded passes, PPM above PM", about=__doc__,
     writes="figures/gallery.png and .pdf",
     make=make, is_for=pictures.has_snapshots, add_options=add_options)

@@ -9,7 +9,7 @@ import numpy
 
 from photonlab.command import Command
 from photonlab.drawing import style
-from photonlab.drawing.saving import save
+from photonlab.drawing.saving import Drawn
 from photonlab.records import files, images, references
 from photonlab.records.columns import as_number
 from photonlab.records.files import InputError
@@ -52,10 +52,10 @@ def short(text):
     return text if number is None else f"{number:.3g}"
 
 
+@style.drawn_of_pictures
 def draw_heat_map(scene, across, down):
     """The figure of errors of the records of one scene, over two of its settings."""
     columns, lines, found = final_errors(scene.rows, across, down)
-    style.use_for_pictures()
     figure, axes = style.pyplot.subplots(figsize=(0.9 + 0.75 * len(columns), 0.9 + 0.45 * len(lines)),
                                          layout="constrained")
     axes.imshow(found, cmap="viridis_r", aspect="auto", norm="log")
@@ -88,6 +88,7 @@ def final_difference(scene, rows):
     return (image - reference).mean(axis=2)
 
 
+@style.drawn_of_pictures
 def draw_differences(scene, across, down):
     """The figure of differences from the reference of the same; None without any."""
     rows = scene.rows
@@ -99,7 +100,6 @@ def draw_differences(scene, across, down):
     if not shown:
         return None
     scale = numpy.nanpercentile(numpy.abs(shown), 99)
-    style.use_for_pictures()
     figure, grid = style.pyplot.subplots(len(lines), len(columns), squeeze=False, layout="constrained",
                                          figsize=(0.5 + CELL * len(columns), 0.6 + CELL * len(lines)))
     for i, line in enumerate(lines):
@@ -120,19 +120,19 @@ def draw_differences(scene, across, down):
     return figure
 
 
-def make(results, _):
+def make(results, options):
     for scene in results.scenes():
         if scene.rows["mse"].isna().all():
             yield f"{scene.scene}: no errors were recorded (was there a reference?), so no grid"
             continue
         down, across = swept_settings(scene)
         name = files.as_file_name(scene.scene)
-        yield from save(draw_heat_map(scene, across, down), results, f"grid-{name}")
-        differences = draw_differences(scene, across, down)
+        yield Drawn(f"grid-{name}", draw_heat_map(scene, across, down, **options.look))
+        differences = draw_differences(scene, across, down, **options.look)
         if differences is None:
             yield f"{scene.scene}: no snapshots, so no differences"
         else:
-            yield from save(differences, results, f"differences-{name}")
+            yield Drawn(f"differences-{name}", differences)
 
 
 def is_sweep(results):
@@ -140,6 +140,6 @@ def is_sweep(results):
 
 
 COMMAND = Command(
-    name="grid", summary="a sweep over two settings: heat map and difference images", about=__doc__,
+    name="grid", draws=True, summary="a sweep over two settings: heat map and difference images", about=__doc__,
     writes="figures/grid-SCENE and differences-SCENE, .png and .pdf",
     make=make, is_for=is_sweep)

@@ -8,11 +8,11 @@ from matplotlib import lines
 
 from photonlab.command import Command
 from photonlab.drawing import style
-from photonlab.drawing.panels import panels_over_legend
-from photonlab.drawing.saving import save_scenes
+from photonlab.drawing.panels import panels_over_legend, set_titles
+from photonlab.drawing.places import AXES, MEBIBYTE
+from photonlab.drawing.saving import drawn_of_scenes
 
 MEASURED = ["paths_emitted", "map_bytes", "hit_point_bytes"]
-MEBIBYTE = 2 ** 20
 
 
 def curve_of(rows):
@@ -39,18 +39,20 @@ def lines_of(scene):
 
 
 def shared_name(labels):
-    """What the labels of methods have in common: "PPM (3 settings)"."""
+    """What the labels of methods have in common: "PPM (3 settings)"; or the first, and how many more."""
     parts = [label.split(", ") for label in labels]
     common = [part for part in parts[0] if all(part in others for others in parts)]
-    return labels[0] if len(labels) == 1 else f"{', '.join(common)} ({len(labels)} settings)".lstrip()
+    if len(labels) == 1:
+        return labels[0]
+    return f"{', '.join(common)} ({len(labels)} settings)" if common else f"{labels[0]} and {len(labels) - 1} more"
 
 
+@style.drawn
 def draw(scene):
     """The figure of the records of one scene; None when no method of it emits photons."""
     drawn = lines_of(scene)
     if not drawn:
         return None
-    style.use()
     styles = style.method_styles(scene)
     looks = [{**styles[own[0]], "label": shared_name(own)} for own, _ in drawn]
     figure, [[axes]] = panels_over_legend(
@@ -61,18 +63,18 @@ def draw(scene):
     for axis, values in [(axes.xaxis, [place for _, curve in drawn for place in curve.index]),
                          (axes.yaxis, [value for _, curve in drawn for value in curve if value > 0])]:
         style.logarithmic(axis, min(values) / 1.2, max(2 * min(values), *values) * 1.1)
-    axes.set_xlabel("light paths emitted")
-    axes.set_ylabel("photon map and hit points (MiB)")
-    axes.set_title(scene.scene, loc="left")
+    axes.set_xlabel(AXES["photons"].title)
+    axes.set_ylabel(AXES["memory"].title)
+    set_titles(axes, scene.scene)
     return figure
 
 
-def make(results, _):
-    return save_scenes(results, "memory", ((scene.scene, draw(scene)) for scene in results.scenes()),
+def make(results, options):
+    return drawn_of_scenes("memory", ((scene.scene, draw(scene, **options.look)) for scene in results.scenes()),
                        "no method emits photons, so there is nothing to draw")
 
 
 COMMAND = Command(
-    name="memory", summary="bytes of photons and hit points against light paths", about=__doc__,
+    name="memory", draws=True, summary="bytes of photons and hit points against light paths", about=__doc__,
     writes="figures/memory-SCENE.png and .pdf",
     make=make)

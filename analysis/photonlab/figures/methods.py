@@ -11,8 +11,8 @@ from matplotlib import lines
 
 from photonlab.command import Command, has
 from photonlab.drawing import style
-from photonlab.drawing.panels import filled, panels_over_legend
-from photonlab.drawing.saving import save
+from photonlab.drawing.panels import filled, panels_over_legend, set_titles
+from photonlab.drawing.saving import Drawn
 from photonlab.records import methods, tables
 from photonlab.statistics import decomposition
 
@@ -23,10 +23,12 @@ COLUMNS = ["scene", "region", "method", "pass", "mse", "mse_error", "relative", 
 
 
 def last_rows(results):
-    """The rows of decomposition.csv at the last pass, of gathered light, with the label of their method, its rule, and its first
-    radius."""
+    """The rows of decomposition.csv at the last pass that all methods have, of gathered light, with the label of their method, its
+    rule, and its first radius."""
     rows = decomposition.read_decomposition(results)
-    rows = rows[(rows["component"] == "gathered") & (rows["pass"] == rows["pass"].max())].copy()
+    points_by_pass = rows.groupby("pass")["point"].nunique()
+    last = points_by_pass.index[points_by_pass == points_by_pass.max()].max()
+    rows = rows[(rows["component"] == "gathered") & (rows["pass"] == last)].copy()
     points = results.rows["run"].map(methods.point_of)
     rows["method"] = rows["point"].map(dict(zip(points, results.rows["method"])))
     first = results.rows.drop_duplicates("method").set_index("method")
@@ -61,6 +63,7 @@ def relative_rows(rows):
     return table
 
 
+@style.drawn
 def draw_sweep(rows):
     """MSE against the initial radius, a panel a scene and region, for rules of which more than one was tried; None without."""
     swept = rows[rows["swept"] != ""]
@@ -68,7 +71,6 @@ def draw_sweep(rows):
     rules = list(counts[counts > 1].index)
     if not rules:
         return None
-    style.use()
     panels = list(dict.fromkeys(zip(rows["scene"], rows["region"])))
     colors = {rule: f"C{place}" for place, rule in enumerate(rules)}
     handles = [lines.Line2D([], [], label=rule, color=colors[rule], marker="o") for rule in rules]
@@ -82,7 +84,7 @@ def draw_sweep(rows):
             axes.errorbar(of_rule["place"], of_rule["mse"], yerr=1.96 * of_rule["mse_error"], color=colors[rule], marker="o")
         axes.set_xscale("log", base=2)
         axes.set_yscale("log")
-        axes.set_title(", ".join(panel), loc="left")
+        set_titles(axes, ", ".join(panel))
         axes.set_xlabel("initial radius (footprints)")
     for panels_of_row in grid:
         panels_of_row[0].set_ylabel("MSE (radiance²)")
@@ -95,13 +97,13 @@ def make(results, options):
     if not table:
         yield f"{results.folder}: no ppm with schedule hachisuka, which the others are compared with"
         return
-    yield tables.write_derived(results, NAME, COLUMNS, table)
-    figure = draw_sweep(rows)
+    yield tables.Derived(NAME, COLUMNS, table)
+    figure = draw_sweep(rows, **options.look)
     if figure is not None:
-        yield from save(figure, results, "initial-radius")
+        yield Drawn("initial-radius", figure)
 
 
 COMMAND = Command(
-    name="methods", summary="MSE of every method and region relative to ppm, and against the initial radius", about=__doc__,
+    name="methods", draws=True, summary="MSE of every method and region relative to ppm, and against the initial radius", about=__doc__,
     writes="methods.csv; where radii were swept figures/initial-radius, .png and .pdf",
     make=make, is_for=lambda results: has(decomposition.NAME)(results) and results.rows["schedule"].nunique() > 1)

@@ -10,8 +10,8 @@ from matplotlib import lines
 
 from photonlab.command import Command, has
 from photonlab.drawing import style
-from photonlab.drawing.panels import panels_over_legend
-from photonlab.drawing.saving import save_scenes
+from photonlab.drawing.panels import panels_over_legend, set_titles
+from photonlab.drawing.saving import drawn_of_scenes
 from photonlab.records import files, records, tables
 from photonlab.records.files import InputError
 
@@ -40,9 +40,9 @@ def read_probes(results):
     return rows
 
 
+@style.drawn
 def draw(rows, labels, styles):
     """The figure of one scene's probes: a row a quantity, a column a probe. Labels and styles are those of the records' methods."""
-    style.use()
     names = list(rows["probe"].drop_duplicates())
     handles = [lines.Line2D([], [], label=label, **styles[label]) for label in labels if label in set(rows["method"])]
     figure, grid = panels_over_legend(
@@ -67,19 +67,19 @@ def draw(rows, labels, styles):
             if column == 0:
                 axes.set_ylabel(title)
             if row == 0:
-                axes.set_title(f"{rows['scene'].iloc[0]}: {name}", loc="left")
+                set_titles(axes, f"{rows['scene'].iloc[0]}: {name}")
         grid[-1][column].set_xlabel("pass")
     figure.align_ylabels()
     return figure
 
 
-def make(results, _):
+def make(results, options):
     rows, styles = read_probes(results), style.method_styles(results)
-    return save_scenes(results, "probes", ((scene, draw(own[own["seed"] == own["seed"].min()], results.labels, styles))
+    return drawn_of_scenes("probes", ((scene, draw(own[own["seed"] == own["seed"].min()], results.labels, styles, **options.look))
                                            for scene, own in rows.groupby("scene", sort=False)))
 
 
 COMMAND = Command(
-    name="probes", summary="radius, photons, density and radiance at single pixels", about=__doc__,
+    name="probes", draws=True, summary="radius, photons, density and radiance at single pixels", about=__doc__,
     writes="figures/probes-SCENE.png and .pdf",
     make=make, is_for=has("probes.csv"))

@@ -13,7 +13,7 @@ from matplotlib import colors
 from photonlab.command import Command
 from photonlab.drawing import style
 from photonlab.drawing.panels import filled
-from photonlab.drawing.saving import save
+from photonlab.drawing.saving import Drawn
 from photonlab.records import files, images, methods
 
 COLUMNS = 4
@@ -59,8 +59,8 @@ def scale_of(radii):
     return colors.LogNorm(low, high if high > low else 1.01 * low)
 
 
+@style.drawn_of_pictures
 def draw(title, found):
-    style.use_for_pictures()
     columns = min(COLUMNS, len(found))
     rows = -(-len(found) // columns)
     height, width = next(iter(found.values())).shape
@@ -84,7 +84,7 @@ def make(results, options):
         if not found:
             yield f"{scene.scene}: no snapshot that has radii"
             continue
-        yield from save(draw(f"{scene.scene}: radius after the last pass", found), results, f"radii-{files.as_file_name(scene.scene)}")
+        yield Drawn(f"radii-{files.as_file_name(scene.scene)}", draw(f"{scene.scene}: radius after the last pass", found, **options.look))
 
 
 def adapt(results):
@@ -97,5 +97,5 @@ def add_options(parser):
 
 
 COMMAND = Command(
-    name="radii", summary="images of the radius that each method came to", about=__doc__,
+    name="radii", draws=True, summary="images of the radius that each method came to", about=__doc__,
     writes="figures/radii-SCENE, .png and .pdf", make=make, is_for=adapt, add_options=add_options)

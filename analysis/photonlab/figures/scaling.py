@@ -22,11 +22,11 @@ from matplotlib import lines
 from photonlab.command import Command
 from photonlab.drawing import style
 from photonlab.drawing.panels import panels_over_legend
-from photonlab.drawing.saving import save
+from photonlab.drawing.saving import Drawn
 from photonlab.records import columns, files, kept_files, tables
 from photonlab.records.files import InputError
 
-SCENE = Path(__file__).resolve().parents[2] / "scenes/cornell-box/scene.xml"
+SCENE = Path(__file__).resolve().parents[3] / "scenes/cornell-box/scene.xml"
 STAGES = ["trace", "build", "gather", "direct"]
 SECONDS = ["seconds", "cpu_seconds", *(f"seconds_{stage}" for stage in STAGES)]
 BYTES = ["map_bytes", "hit_point_bytes"]
@@ -152,9 +152,9 @@ def looks_of(table):
     return looks
 
 
+@style.drawn
 def draw(table):
     """The figure of scaling.csv."""
-    style.use()
     looks = looks_of(table)
     handles = [lines.Line2D([], [], **look) for look in looks.values()]
     handles.append(lines.Line2D([], [], label="proportional", **GUIDE))
@@ -212,7 +212,7 @@ def make(results, options):
         make_records(options.run, results.folder)
     table = read(results.folder / NAME)
     yield from statements(table)
-    yield from save(draw(table), results, "scaling")
+    yield Drawn("scaling", draw(table, **options.look))
 
 
 def add_options(parser):
@@ -220,6 +220,6 @@ def add_options(parser):
 
 
 COMMAND = Command(
-    name="scaling", summary="seconds and memory of a pass against its photons and hit points", about=__doc__,
+    name="scaling", draws=True, summary="seconds and memory of a pass against its photons and hit points", about=__doc__,
     writes="scaling.csv (with --run) and figures/scaling.png and .pdf",
     make=make, starts_from=NAME, read=Measured, add_options=add_options)

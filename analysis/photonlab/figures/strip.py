@@ -6,28 +6,26 @@ share one scale. Under each image are its pass and its RMSE from iterations.csv:
 halves.
 """
 
-import textwrap
 from dataclasses import dataclass, field
 
 import numpy
 
 from photonlab.command import Command, positive
-from photonlab.drawing import pictures, style
-from photonlab.drawing.saving import save
+from photonlab.drawing import compared, pictures, style
+from photonlab.drawing.cells import Cell, Tile, draw_cells
+from photonlab.drawing.saving import Drawn
 from photonlab.records import files, images, methods, records, references
 from photonlab.statistics import errors
 
 COMPONENT_TITLES = {"total": "whole image", "emission": "emission alone", "direct": "direct light alone",
                     "gathered": "gathered light alone"}
-SMALLEST_CELL = 1.1              # inches; many methods make a wider figure, not smaller pictures
-GAP, MARGIN, ROW_GAP = 0.06, 0.1, 0.08
 
 
 @dataclass
 class Entry:
     """A picture of the strip with the difference under it."""
     label: str
-    below: str                    # what stands under both
+    below: list                   # what stands under both, line by line
     image: numpy.ndarray
     difference: numpy.ndarray     # None without a reference
 
@@ -52,10 +50,10 @@ def chosen_pass(passes_of_methods, wanted):
     return max(common) if common else None
 
 
-def collect(scene, options):
+def collect(scene, component, options):
     """What there is to draw of the records of one scene."""
     found, strip = {}, Strip()
-    for label in methods.shown_methods(scene, options.alpha, options.all):
+    for label in methods.shown_methods(scene, options.alpha, options.all or scene.is_part):
         rows = methods.run_of(scene, label, options.seed)
         run = None if rows is None else scene.run(rows["run"].iloc[0])
         if run and run.snapshots:
@@ -66,7 +64,7 @@ def collect(scene, options):
     common = chosen_pass([set(run.snapshots) for _, run in found.values()], getattr(options, "pass"))
     for label, (rows, run) in found.items():
         number = max(run.snapshots) if common is None else common
-        why_not = add_entry(strip, scene, label, rows, run, number, options.component)
+        why_not = add_entry(strip, scene, label, rows, run, number, component)
         if why_not:
             strip.said.append(f"{scene.scene}: {label}: {why_not}")
     return strip
@@ -88,29 +86,11 @@ def add_entry(strip, scene, label, rows, run, number, component):
             strip.floor = errors.root(rows[rows["component"] == component]["reference_floor"].max())
     difference = None if reference is None else (image - reference).mean(axis=2)
     below = [f"pass {number}", pictures.error_text(rows[(rows["pass"] == number) & (rows["component"] == component)])]
-    strip.entries.append(Entry(label, "\n".join(filter(None, below)), image, difference))
+    strip.entries.append(Entry(label, list(filter(None, below)), image, difference))
     if reference is None:
         why = f": {judge.path} {judge.why_not or 'has none'}" if judge else ""
         return f"no reference for the {COMPONENT_TITLES[component]}{why}, so no difference"
     return None
-
-
-@dataclass(frozen=True)
-class Layout:
-    """Where things are, in inches from the upper left corner."""
-    width: float
-    height: float
-    cell: float           # width of a picture
-    cell_height: float
-    top: float            # where pictures begin
-
-    def add_axes(self, figure, column, row):
-        x, y = MARGIN + column * (self.cell + GAP), self.top + row * (self.cell_height + ROW_GAP)
-        axes = figure.add_axes([x / self.width, 1 - (y + self.cell_height) / self.height, self.cell / self.width,
-                                self.cell_height / self.height])
-        axes.set(xticks=[], yticks=[])
-        axes.spines[:].set_visible(True)
-        return axes
 
 
 def note_of(strip, exposure, noise):
@@ -129,71 +109,52 @@ def largest_difference(differences):
     return largest or 1.0
 
 
+@style.drawn_of_pictures
 def draw(title, strip, exposure, noise):
     """The figure: images above, differences below, the reference last with the colour bar under it."""
-    style.use_for_pictures()
-    columns = len(strip.entries) + (strip.reference is not None)
-    width = max(style.FULL_WIDTH, columns * SMALLEST_CELL)
-    cell = min((width - 2 * MARGIN) / columns - GAP, 2.6)
-    picture_height, picture_width = strip.entries[0].image.shape[:2]
-    cell_height = cell * picture_height / picture_width
-    names = [textwrap.wrap(entry.label, max(12, int(cell * 14))) for entry in strip.entries]
-    note = textwrap.wrap(note_of(strip, exposure, noise), int(104 * width / style.FULL_WIDTH))
-    top = 0.3 + 0.15 * max(map(len, names))
-    text, caption = 0.36, 0.12 + 0.13 * len(note)
-    rows = 2 if strip.differences else 1
-    height = top + rows * cell_height + text + (ROW_GAP if rows > 1 else 0) + caption
-
-    figure, layout = style.pyplot.figure(figsize=(width, height)), Layout(width, height, cell, cell_height, top)
     largest = largest_difference(strip.differences)
     colours = style.pyplot.get_cmap(style.DIFFERENCE_COLOURS).copy()
     colours.set_bad("#ff00ff")
-    mapped = None
-    for column, (entry, name) in enumerate(zip(strip.entries, names)):
-        axes = layout.add_axes(figure, column, 0)
-        axes.imshow(pictures.to_srgb(entry.image, exposure))
-        axes.set_title("\n".join(name), fontsize=8.5)
+    shown = []
+    for entry in strip.entries:
+        rows = [[Tile(pictures.to_srgb(entry.image, exposure))]]
         if entry.difference is not None:
-            axes = layout.add_axes(figure, column, 1)
-            mapped = axes.imshow(entry.difference, cmap=colours, vmin=-largest, vmax=largest)
-        axes.set_xlabel(entry.below, fontsize=8, labelpad=3)
+            rows.append([Tile(entry.difference, {"cmap": colours, "vmin": -largest, "vmax": largest})])
+        shown.append(Cell(entry.label, rows, entry.below))
     if strip.reference is not None:
-        axes = layout.add_axes(figure, len(strip.entries), 0)
-        axes.imshow(pictures.to_srgb(strip.reference, exposure))
-        axes.set_title("reference", fontsize=8.5)
-    if mapped is not None:
-        add_colour_bar(figure, layout, strip, mapped, largest)
-    figure.text(MARGIN / width, 1 - 0.05 / height, title, va="top", fontsize=9.5)
-    figure.text(MARGIN / width, 0.05 / height, "\n".join(note), fontsize=7.5, color="#333333", linespacing=1.25)
+        shown.append(Cell("reference", [[Tile(pictures.to_srgb(strip.reference, exposure))]]))
+    figure, axes = draw_cells(shown, title, note_of(strip, exposure, noise))
+    if strip.reference is not None and strip.differences:
+        mapped = next(rows[1][0].images[0] for rows in axes if len(rows) > 1 and isinstance(rows[1], list))
+        add_colour_bar(figure, axes[-1][1], strip, mapped, largest)
     return figure
 
 
-def add_colour_bar(figure, layout, strip, mapped, largest):
-    """Under the reference: what the colours of differences mean."""
-    x = MARGIN + len(strip.entries) * (layout.cell + GAP)
-    y = layout.top + layout.cell_height + ROW_GAP
-    heading = 0.25
-    figure.text((x + 0.05) / layout.width, 1 - y / layout.height, "image − reference", fontsize=8, va="top")
-    bar = figure.add_axes([(x + 0.05) / layout.width, 1 - (y + layout.cell_height) / layout.height, 0.12 / layout.width,
-                           (layout.cell_height - heading) / layout.height])
+def add_colour_bar(figure, place, strip, mapped, largest):
+    """Under the reference, where its difference would be: what the colours of differences mean. `place` is in fractions of the
+    figure."""
+    x, y, width, height = place
+    small = style.size("small")
+    heading = 1.5 * small / 72 / figure.get_figheight()
+    figure.text(x, y + height, "image − reference", fontsize=small, va="top")
+    bar = figure.add_axes([x, y, 0.12 / figure.get_figwidth(), height - heading])
     beyond = any((numpy.abs(difference) > largest).any() for difference in strip.differences)
     figure.colorbar(mapped, cax=bar, extend="both" if beyond else "neither", ticks=[-largest, 0, largest])
     limit = errors.two_digits(largest)
-    bar.set_yticklabels([f"−{limit}", "0", f"+{limit}"], fontsize=8)
-    bar.tick_params(length=2)
+    bar.set_yticklabels([f"−{limit}", "0", f"+{limit}"], fontsize=small)
 
 
 def make(results, options):
     for scene in results.scenes():
-        strip = collect(scene, options)
-        yield from strip.said
-        if not strip.entries:
-            yield f"{scene.scene}: nothing to show, so no strip"
-            continue
-        exposure = options.exposure or pictures.exposure_for(strip.entries[0].image if strip.reference is None else strip.reference)
-        figure = draw(f"{scene.scene}: {COMPONENT_TITLES[options.component]}", strip, exposure, errors.noise_note(scene.rows))
-        suffix = "" if options.component == "total" else f"-{options.component}"
-        yield from save(figure, results, f"strip-{files.as_file_name(scene.scene)}{suffix}")
+        for component in options.components:
+            strip = collect(scene, component, options)
+            yield from strip.said
+            if not strip.entries:
+                yield f"{scene.scene}: nothing to show, so no strip"
+                continue
+            exposure = options.exposure or pictures.exposure_for(strip.entries[0].image if strip.reference is None else strip.reference)
+            figure = draw(f"{scene.scene}: {COMPONENT_TITLES[component]}", strip, exposure, errors.noise_note(scene.rows), **options.look)
+            yield Drawn(f"strip-{files.as_file_name(scene.scene)}{compared.ending_of(component)}", figure)
 
 
 def add_options(parser):
@@ -203,13 +164,13 @@ def add_options(parser):
     parser.add_argument("--alpha", type=positive, nargs="+", default=[], metavar="A",
                         help="alphas to show of methods that have one (default: the lowest)")
     parser.add_argument("--all", action="store_true", help="show every method, not the first one of each kind")
-    parser.add_argument("--component", choices=records.COMPONENTS, default="total",
-                        help="what to show (default: total)")
+    parser.add_argument("--components", choices=records.COMPONENTS, nargs="+", default=["total"],
+                        help="which light, a figure each (default: total)")
     parser.add_argument("--exposure", type=positive, metavar="E",
                         help="factor on radiance in the pictures (default: 97%% of the lit pixels are below white)")
 
 
 COMMAND = Command(
-    name="strip", summary="PM, PPM and reference side by side, with their differences", about=__doc__,
+    name="strip", draws=True, summary="PM, PPM and reference side by side, with their differences", about=__doc__,
     writes="figures/strip-SCENE.png and .pdf (strip-SCENE-COMPONENT for a single component)",
     make=make, is_for=pictures.has_snapshots, add_options=add_options)

@@ -16,12 +16,13 @@ from matplotlib import lines
 
 from photonlab.command import Command, positive
 from photonlab.drawing import style
-from photonlab.drawing.panels import panels_over_legend
-from photonlab.drawing.saving import save
+from photonlab.drawing.panels import name_row, panels_over_legend, set_titles
+from photonlab.drawing.saving import Drawn
 from photonlab.records import tables
 from photonlab.statistics.time_to_error import CLOCKS, COLUMNS, NAME, table_of
 
 
+@style.drawn
 def draw(results, table):
     """The figure of records and their times to thresholds: a row a scene and a column a clock, of the whole picture; None when
     nothing was reached."""
@@ -30,7 +31,6 @@ def draw(results, table):
     reached = [row for row in whole if "time" in row]
     if not reached:
         return None
-    style.use()
     scenes = list(dict.fromkeys(row["scene"] for row in whole))
     styles = style.method_styles(results)
     handles = [lines.Line2D([], [], label=label, **styles[label]) for label in labels]
@@ -56,10 +56,9 @@ def draw(results, table):
             style.logarithmic(axes.yaxis, min(times) / 1.5, max(times) * 2)
             style.logarithmic(axes.xaxis, min(thresholds) / 2, max(thresholds) * 2)
             axes.invert_xaxis()
-            axes.set_title(CLOCKS[clock], loc="right")
+            set_titles(axes, scene if axes is panels[0] else "", CLOCKS[clock])
             axes.set_xlabel("relMSE to be reached")
-        panels[0].set_title(scene, loc="left")
-        panels[0].set_ylabel("time (s)")
+        name_row(panels, "time (s)")
     return figure
 
 
@@ -68,12 +67,12 @@ def make(results, options):
     if not table:
         yield f"{results.folder}: no relmse was recorded (was there a reference?), so no times"
         return
-    yield tables.write_derived(results, NAME, COLUMNS, table)
-    figure = draw(results, table)
+    yield tables.Derived(NAME, COLUMNS, table)
+    figure = draw(results, table, **options.look)
     if figure is None:
         yield f"{results.folder}: no method reached a threshold, so there is nothing to draw"
     else:
-        yield from save(figure, results, "time-to-error")
+        yield Drawn("time-to-error", figure)
 
 
 def add_options(parser):
@@ -82,6 +81,6 @@ def add_options(parser):
 
 
 COMMAND = Command(
-    name="time_to_error", summary="seconds to a given relMSE, by wall clock and by processor", about=__doc__,
+    name="time_to_error", draws=True, summary="seconds to a given relMSE, by wall clock and by processor", about=__doc__,
     writes="time-to-error.csv and figures/time-to-error, .png and .pdf",
     make=make, add_options=add_options)

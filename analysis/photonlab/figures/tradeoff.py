@@ -18,8 +18,8 @@ from matplotlib import lines
 
 from photonlab.command import Command
 from photonlab.drawing import style
-from photonlab.drawing.panels import panels_over_legend
-from photonlab.drawing.saving import RECORDS, save_scenes
+from photonlab.drawing.panels import panels_over_legend, set_titles
+from photonlab.drawing.saving import RECORDS, drawn_of_scenes
 from photonlab.records import files, tables
 from photonlab.records.columns import as_number
 from photonlab.statistics import errors
@@ -30,13 +30,13 @@ BLACK_MARKERS = [{"marker": "o"}, {"marker": "s"}, {"marker": "^"}]
 FRONT = {"color": "#888888", "linewidth": 3, "alpha": 0.5, "zorder": 1}
 
 
+@style.drawn
 def draw(table, columns, clock, noise):
     """The figure of the table of one scene: error against seconds, a line a knob through the default, and the Pareto front under them.
     None when nothing is resolved. `columns` are those of the records."""
     table = [row for row in table if row["rmse"] > 0]
     if not table:
         return None
-    style.use()
     defaults = {row["point"]: row for row in table if is_default(row)}
     knobs = list(dict.fromkeys((row["default"], row["knob"] or row["point"]) for row in table if not is_default(row)))
     looks = {knob: {"color": style.COLOURS[place % len(style.COLOURS)], "marker": style.MARKERS[place % len(style.MARKERS)],
@@ -73,19 +73,20 @@ def draw(table, columns, clock, noise):
         style.logarithmic(axis, low / margin, high * margin)
     axes.set_xlabel(f"time of all passes ({CLOCKS[clock]})")
     axes.set_ylabel("RMSE (radiance)")
-    axes.set_title(table[0]["scene"], loc="left")
+    set_titles(axes, table[0]["scene"])
     return figure
 
 
 def make(results, options):
     clock, scenes = options.clock, results.scenes()
     of_scenes = [table_of(scene, clock) for scene in scenes]
-    yield tables.write_derived(results, NAME, COLUMNS, [row for table in of_scenes for row in table])
+    yield tables.Derived(NAME, COLUMNS, [row for table in of_scenes for row in table])
     noise = errors.noise_note(results.rows[results.rows["component"] == "total"])
     text = f"{words(of_scenes, clock, noise)}\n<!-- {RECORDS} {results.hash} -->\n"
-    yield files.replace_file(results.folder / "tradeoff.md", text)
-    figures = ((scene.scene, draw(table, results.columns, clock, noise)) for scene, table in zip(scenes, of_scenes))
-    yield from save_scenes(results, "tradeoff", figures, "nothing is resolved, so there is nothing to draw")
+    if not results.is_part:
+        yield files.replace_file(results.folder / "tradeoff.md", text)
+    figures = ((scene.scene, draw(table, results.columns, clock, noise, **options.look)) for scene, table in zip(scenes, of_scenes))
+    yield from drawn_of_scenes("tradeoff", figures, "nothing is resolved, so there is nothing to draw")
 
 
 def has_default(results):
@@ -97,6 +98,6 @@ def add_options(parser):
 
 
 COMMAND = Command(
-    name="tradeoff", summary="what each setting buys and costs beside a method named default", about=__doc__,
+    name="tradeoff", draws=True, summary="what each setting buys and costs beside a method named default", about=__doc__,
     writes="tradeoff.csv, tradeoff.md and figures/tradeoff-SCENE, .png and .pdf",
     make=make, is_for=has_default, add_options=add_options)

@@ -1,9 +1,11 @@
 """Reads what runs recorded: iterations.csv into checked rows, each with the label of its method (methods.py).
 
-Runs that differ in nothing but their seed are repetitions of one method. Settings stay text, as they were written; measures and times
-are numbers, NaN where there is nothing.
+Runs that differ in nothing but their seed are repetitions of one method. In `rows` settings stay text, as they were written; measures
+and times are numbers, NaN where there is nothing. `frame` is the same for a notebook: all that is a number is one, and its units are
+there.
 """
 
+import fnmatch
 import time
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -30,6 +32,7 @@ class Records:
     hash: str                 # of iterations.csv: what is drawn says by it which records it is of
     has_stamps: bool          # of a program that writes down what each file is (kept_files.py)
     rows_by_run: dict         # {run: hash of its own iterations.csv}; None where rows are no lines
+    is_part: bool = False     # of what the folder has: tables of it are not the folder's
     runs: dict = field(default_factory=dict)    # those that were asked for
 
     @property
@@ -44,6 +47,39 @@ class Records:
     def scenes(self):
         """The records of each scene."""
         return [self.of_rows(rows) for _, rows in self.rows.groupby("scene", sort=False)]
+
+    @property
+    def frame(self):
+        """The rows as a tidy table: one row a run, recorded pass and component. Numbers are numbers, what does not apply is missing,
+        and `frame.attrs["units"]` has the unit of each column that has one."""
+        frame = self.rows.drop(columns=methods.GIVEN).copy()
+        for column in self.columns:
+            if column.type != "text" and frame[column.name].dtype == object:
+                frame[column.name] = pandas.to_numeric(frame[column.name], errors="coerce")
+            elif column.kind == "setting":
+                frame[column.name] = frame[column.name].replace("", numpy.nan)
+        frame["method"] = pandas.Categorical(frame["method"], self.labels, ordered=True)
+        frame.attrs["units"] = {column.name: column.unit for column in self.columns if column.unit and column.name in frame}
+        return frame
+
+    def scene_named(self, name):
+        """The records of one scene."""
+        return self.only([name]).scenes()[0]
+
+    def only(self, scenes=None, labels=None):
+        """The records of these scenes and methods alone; * stands for anything. Throws InputError where there are none."""
+        rows = self.rows
+        for option, column, wanted in [("--scenes", "scene", scenes), ("--methods", "method", labels)]:
+            known = list(dict.fromkeys(rows["scene"])) if column == "scene" else self.labels
+            for pattern in wanted or []:
+                if pattern not in known and not fnmatch.filter(known, pattern):
+                    raise InputError(f"{option} {pattern}: {self.file} has no such {column}; expected one of {'; '.join(known)}")
+            if wanted:
+                kept = {name for pattern in wanted for name in known if name == pattern or fnmatch.fnmatchcase(name, pattern)}
+                rows = rows[rows[column].isin(kept)]
+        if rows.empty:
+            raise InputError(f"{self.file}: no scene has these methods")
+        return self if rows is self.rows else replace(self.of_rows(rows), is_part=True)
 
     def of_rows(self, rows):
         """The records of these rows alone."""

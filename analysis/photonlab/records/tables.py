@@ -8,6 +8,7 @@ import csv
 import io
 import math
 import re
+from dataclasses import dataclass
 
 import pandas
 
@@ -62,9 +63,20 @@ def write_table(file, columns, rows):
     return files.replace_file(file, "".join(",".join(map(quoted, line)) + "\n" for line in lines))
 
 
-def write_derived(results, name, columns, rows):
-    """RESULTS/NAME with a column `records`: the hash of the records that the rows were made from."""
-    return write_table(results.folder / name, [*columns, RECORDS], [{**row, RECORDS: results.hash} for row in rows])
+@dataclass
+class Derived:
+    """A table that is made of records: rows are dictionaries."""
+    name: str
+    columns: list
+    rows: list
+
+
+def write_derived(results, table):
+    """RESULTS/NAME with a column `records`: the hash of the records that the rows were made from. The folder's tables are of all scenes
+    and methods: of a part of the records none is written."""
+    if getattr(results, "is_part", False):
+        return f"{table.name} is of all scenes and methods, so it is not written"
+    return write_table(results.folder / table.name, [*table.columns, RECORDS], [{**row, RECORDS: results.hash} for row in table.rows])
 
 
 def read_derived(results, name, columns, command):

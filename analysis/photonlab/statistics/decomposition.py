@@ -88,7 +88,7 @@ def make(results, options):
         table += table_of(ensemble, results, own)
         write_images(ensemble, results, pass_of_images(ensemble, options.images))
     yield from left_out
-    yield tables.write_derived(results, NAME, columns_of(results.columns), table)
+    yield tables.Derived(NAME, columns_of(results.columns), table)
 
 
 def add_options(parser):

@@ -13,6 +13,7 @@ import pandas
 
 from photonlab.records.files import InputError
 
+PLACES = ["seconds", "paths_emitted", "map_bytes", "hit_point_bytes"]    # of a point of a curve, as means over seeds
 SQUARED = ["mse_unbiased", "mse", "rmse"]    # one quantity, which is shown as RMSE, without the reference's noise where it can be
 
 
@@ -37,13 +38,13 @@ def noise_note(rows):
 
 
 def aggregate_over_seeds(rows, column):
-    """A method's curve: by pass, how many seeds recorded it, the mean of their seconds, and the mean, least and largest
+    """A method's curve: by pass, how many seeds recorded it, the means of PLACES, and the mean, least and largest
     of their `column`. `rows` are those of one scene, component and method. A pass that only some of the seeds
     recorded is left out: a mean over other seeds would be a step in the curve."""
     passes = rows.groupby("pass")
     curve = pandas.DataFrame({
         "seeds": passes.size(),
-        "seconds": passes["seconds"].mean(),
+        **{name: passes[name].mean() for name in PLACES},
         # A NaN (no finite pixel was left) stays one: the mean of the other seeds would hide it.
         "mean": passes[column].agg(lambda values: values.mean(skipna=False)),
         "least": passes[column].agg(lambda values: values.min(skipna=False)),

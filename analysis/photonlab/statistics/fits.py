@@ -104,7 +104,7 @@ def make(results, options):
                 families.setdefault((rest, component), {})[first["alpha"]] = best_alphas.Point(own, ensemble.seeds,
                                                                                              moments[component])
     yield from left_out
-    yield tables.write_derived(results, NAME, columns_of(results.columns), table)
+    yield tables.Derived(NAME, columns_of(results.columns), table)
     yield from write_best(results, {key: family for key, family in families.items() if len(family) > 1})
 
 
@@ -117,7 +117,7 @@ def write_best(results, families):
         else:
             best += best_alphas.best_alphas(family, component, results.columns)
     if best:
-        yield tables.write_derived(results, best_alphas.NAME, best_alphas.columns_of(results.columns), best)
+        yield tables.Derived(best_alphas.NAME, best_alphas.columns_of(results.columns), best)
     else:
         files.remove_file(results.folder / best_alphas.NAME)
 

@@ -17,7 +17,7 @@ def write_best(results, radii=("4", "16"), regions=("image", "edge"), passes=(1,
             for component in ["total", "gathered"] for radius in radii for region in regions for number in passes]
     synthetic.write_csv(results, synthetic.rows(lambda *_: 1e-4))
     found = records.read(results)
-    tables.write_derived(found, best_alphas.NAME, best_alphas.columns_of(found.columns), made)
+    tables.write_derived(found, tables.Derived(best_alphas.NAME, best_alphas.columns_of(found.columns), made))
     return found
 
 
