@@ -1,6 +1,7 @@
 """Figures as files, which say in their metadata which records they were made from."""
 
 import io
+import shutil
 import struct
 from dataclasses import dataclass
 from pathlib import Path
@@ -41,18 +42,16 @@ def save(drawn, results, folder=None, formats=("png", "pdf"), caption=True):
 
 def data_of(figure, kind, records, box):
     """The bytes of a figure's file."""
-    metadata = {"png": {"Software": None, RECORDS: records},
-                "pdf": {"CreationDate": None, "Creator": None, "Producer": None, "Keywords": f"{RECORDS} {records}"},
-                "pgf": None}[kind]
+    metadata = {"png": {"metadata": {"Software": None, RECORDS: records}},
+                "pdf": {"metadata": {"CreationDate": None, "Creator": None, "Producer": None, "Keywords": f"{RECORDS} {records}"}},
+                "pgf": {}}[kind]    # which has a comment in place of metadata
+    if kind == "pgf" and not shutil.which(WRITING["pgf.texsystem"]):
+        raise InputError("--format pgf: there is no pdflatex, which measures its text; expected LaTeX with PGF (on Debian: "
+                         "texlive-latex-base and texlive-pictures)")
     stream = io.BytesIO()
     with pyplot.rc_context(WRITING):
-        try:
-            figure.savefig(stream, format=kind, metadata=metadata, bbox_inches=box)
-        except (FileNotFoundError, RuntimeError) as error:
-            if kind != "pgf":
-                raise
-            raise InputError(f"--format pgf: {error}; expected LaTeX with PGF (on Debian: texlive-pictures)") from error
-    return stream.getvalue()
+        figure.savefig(stream, format=kind, bbox_inches=box, **metadata)
+    return (f"% {RECORDS} {records}\n".encode() if kind == "pgf" else b"") + stream.getvalue()
 
 
 def above_caption(figure):

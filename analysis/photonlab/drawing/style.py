@@ -52,8 +52,9 @@ def drawn(draw, grid=True):
     It can be asked for a width in millimetres, and for a matplotlib style file that has the last word."""
     @functools.wraps(draw)
     def drawn_in_style(*arguments, width=None, style=None, **options):
-        kept = {name: value for name, value in matplotlib.rcParamsDefault.items() if not name.startswith(("backend", "interactive"))}
-        with pyplot.rc_context({**kept, **SETTINGS, "axes.grid": grid}):
+        with pyplot.rc_context():
+            pyplot.rcdefaults()
+            pyplot.rcParams.update({**SETTINGS, "axes.grid": grid})
             if width:
                 pyplot.rcParams.update({**SETTINGS_AT_WIDTH, "figure.figsize": (width / MILLIMETRES, 4.0)})
             if style:

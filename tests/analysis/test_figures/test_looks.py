@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 import unittest
+from unittest import mock
 
 import matplotlib
 import numpy
@@ -117,6 +118,12 @@ class Looks(InFolder):
         for one, other in zip(neighbours, neighbours[1:]):
             self.assertNotEqual(one.get("markerfacecolor"), other.get("markerfacecolor"))
 
+    def test_pgf_without_latex_is_refused_and_says_what_it_wants(self):
+        with mock.patch.dict(os.environ, {"PATH": str(self.results)}):
+            self.assertIn("--format pgf: ", said := self.refusal_of("memory", "--format", "pgf"))
+        self.assertIn("expected LaTeX with PGF", said)
+        self.assertFalse((self.results / "figures").exists())
+
     def test_what_is_drawn_against_and_which_light_are_chosen(self):
         figure = convergence.draw(self.read().scenes()[0], components=["gathered"], against=["photons", "memory", "passes"])
         self.assertEqual([axes.get_xlabel() for axes in figure.axes], ["light paths emitted", "photon map and hit points (MiB)", "pass"])
@@ -163,6 +170,16 @@ class Notebook(InFolder):
         done = subprocess.run([sys.executable, "-c", code, ANALYSIS, self.results], capture_output=True, text=True,
                               env={**os.environ, "MPLBACKEND": "svg"})
         self.assertEqual((done.stdout, done.stderr), ("Figure True svg\n", ""))
+
+    def test_the_script_in_docs_runs_as_it_stands_and_writes_nothing(self):
+        synthetic.write_csv(self.results, synthetic.rows(lambda seed, number, component: seed / max(1, number), paths_emitted="5",
+                                                         map_bytes="5", hit_point_bytes="5"))
+        before = sorted(self.results.rglob("*"))
+        done = subprocess.run([sys.executable, ANALYSIS.parent / "docs/notebook.py", self.results], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        for said in ["seconds are in s", "cornell-box: gathered light alone", "memory-cornell-box of 1 panels", "alone"]:
+            self.assertIn(said, done.stdout)
+        self.assertEqual(sorted(self.results.rglob("*")), before)
 
     def test_a_figure_looks_the_same_whatever_is_set_around_it(self):
         synthetic.write_csv(self.results, synthetic.rows(lambda seed, number, component: 1 / max(1, number)))
