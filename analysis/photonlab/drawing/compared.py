@@ -32,6 +32,12 @@ def nearest(shots, value_of, target):
     return shots[min(known, key=lambda number: abs(math.log(known[number] / target)))] if known else None
 
 
+def distance_text(chosen, value_of, target):
+    """How far the shots that were chosen, {label: shot}, are from the target, as a sentence; "" where they are within a tenth."""
+    farthest = max((abs(math.log(value_of(row) / target)) for row, _ in chosen.values()), default=0.0)
+    return "" if farthest < math.log(1.1) else f" Recorded pictures are up to a factor of {math.exp(farthest):.2g} away from it."
+
+
 def error_of(row):
     """RMSE of a row of the records."""
     return errors.root(row[errors.error_column(row)].iloc[0])

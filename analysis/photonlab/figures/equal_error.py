@@ -2,7 +2,7 @@
 the time and the error that this picture has.
 
 The error is the least that all methods reach, or that of --at. A method whose errors are all larger is shown at its best, which the
-text under it says.
+text under it says; so does the caption, where pictures are more than a tenth away.
 """
 
 from photonlab.command import Command, positive
@@ -32,11 +32,11 @@ def draw(scene, rmse=None, component="total", insets=(), seed=None, **look):
 
 @style.drawn_of_pictures
 def draw_at(scene, shots, rmse, component, insets, seed):
-    chosen = {label: compared.nearest(own, compared.error_of, rmse) for label, own in shots.items()}
+    chosen = {label: shot for label, own in shots.items() if (shot := compared.nearest(own, compared.error_of, rmse))}
     note = f"The recorded picture whose RMSE is nearest to {two_digits(rmse)}, of " \
-        f"{'the lowest seed' if seed is None else f'seed {seed}'}."
-    return compared.draw(scene, f"{scene.scene}: equal error, RMSE {two_digits(rmse)}", note,
-                         {label: shot for label, shot in chosen.items() if shot}, component, insets)
+        f"{'the lowest seed' if seed is None else f'seed {seed}'}.{compared.distance_text(chosen, compared.error_of, rmse)}"
+    return compared.draw(scene, f"{scene.scene}: equal error, RMSE {two_digits(rmse)}", note, chosen, component,
+                         insets)
 
 
 def make(results, options):

@@ -26,11 +26,11 @@ def draw(scene, seconds, component="total", insets=(), seed=None):
     snapshots or a reference."""
     if not all(map(scene.has_run, scene.rows["run"].unique())):
         return None
-    chosen = {label: compared.nearest(compared.shots_of(scene, label, component, seed), compared.seconds_of, seconds)
-              for label in scene.labels}
-    note = f"The recorded picture that is nearest to {seconds:g} s, of {'the lowest seed' if seed is None else f'seed {seed}'}."
-    return compared.draw(scene, f"{scene.scene}: equal time, {seconds:g} s", note,
-                         {label: shot for label, shot in chosen.items() if shot}, component, insets)
+    chosen = {label: shot for label in scene.labels
+              if (shot := compared.nearest(compared.shots_of(scene, label, component, seed), compared.seconds_of, seconds))}
+    note = f"The recorded picture that is nearest to {seconds:g} s, of {'the lowest seed' if seed is None else f'seed {seed}'}." \
+        f"{compared.distance_text(chosen, compared.seconds_of, seconds)}"
+    return compared.draw(scene, f"{scene.scene}: equal time, {seconds:g} s", note, chosen, component, insets)
 
 
 def make(results, options):

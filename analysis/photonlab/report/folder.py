@@ -13,13 +13,12 @@ DERIVED_TABLES = {"fits.csv": "Fits", "best-alphas.csv": "Best alphas",
 
 
 def figures(results, stale):
-    """The figures of these records; the names of others go to `stale`."""
+    """{name: html} of the figures of these records; the names of others go to `stale`."""
     drawn = {file: files.read_bytes(file) for file in sorted((results.folder / "figures").glob("*.png"))}
     stale += [f"figures/{file.name}" for file, data in drawn.items() if records_of_png(data) != results.hash]
-    shown = "\n".join(f'<figure><img alt="{escape(file.name)}" src="data:image/png;base64,{base64.b64encode(data).decode()}">'
-                      f"<figcaption>{escape(file.name)}</figcaption></figure>" for file, data in drawn.items()
-                      if records_of_png(data) == results.hash)
-    return shown
+    return {file.name: f'<figure><img alt="{escape(file.name)}" src="data:image/png;base64,{base64.b64encode(data).decode()}">'
+            f"<figcaption>{escape(file.name)}</figcaption></figure>" for file, data in drawn.items()
+            if records_of_png(data) == results.hash}
 
 
 def derived_table(name, title, rows, results):

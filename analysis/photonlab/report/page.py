@@ -1,5 +1,6 @@
-"""Makes one page of a results folder: RESULTS/report.html, with tables of errors and costs, the figures, every run's
-settings, and the images themselves in a viewer that flips, wipes and subtracts them.
+"""Makes one page of a results folder: RESULTS/report.html. First which method is best, with the pictures and the curves that show it,
+then the images themselves in a viewer that flips, wipes and subtracts them, tables of errors and costs, the other figures, and every
+run's settings.
 
 The page is a single file without anything to load, so that it can be mailed, archived or attached to a paper. Errors
 are those of each method's last pass: RMSE is the root of the mean over seeds of `mse_unbiased`. What the folder does
@@ -16,8 +17,9 @@ import numpy
 from photonlab.command import Command, whole_positive
 from photonlab.drawing import style
 from photonlab.records import files
+from photonlab.report.conclusion import conclusion, warnings
 from photonlab.report.folder import derived_tables, figures, settings
-from photonlab.report.results import cost_table, distinct, error_table, facts, found, read_runs, scene_table
+from photonlab.report.results import cost_table, distinct, error_table, extent, facts, found, read_runs, scene_table
 from photonlab.report.viewer import seeds_left_out, viewer_scenes
 from photonlab.statistics import errors
 
@@ -44,9 +46,9 @@ def data_of(scenes):
     return inlined({"differenceColours": colours, "scenes": scenes})
 
 
-def missing_list(missing):
-    listed = "".join(f"<li>{escape(text)}</li>" for text in missing)
-    return f'<div id="missing"><p>Missing from this folder:</p><ul>{listed}</ul></div>' if missing else ""
+def listed(anchor, heading, texts):
+    items = "".join(f"<li>{escape(text)}</li>" for text in texts)
+    return f'<div id="{anchor}" class="beware" role="note"><p>{heading}:</p><ul>{items}</ul></div>' if texts else ""
 
 
 def page(results, seeds):
@@ -56,17 +58,20 @@ def page(results, seeds):
     scenes = viewer_scenes(results, runs, missing, seeds)
     viewer = Template(part("viewer.html")).substitute(left_out=seeds_left_out(rows, runs, seeds),
                                                       noise=errors.noise_note(rows)) if scenes else ""
-    sections = {"derived": section("derived", "Derived tables", derived_tables(results, stale)), "viewer": viewer,
-                "figures": section("figures", "Figures", figures(results, stale)),
-                "settings": section("settings", "Settings of the runs", settings(runs))}
+    drawn = figures(results, stale)
+    first = conclusion(results, drawn)
+    sections = {"answer": section("answer", "Which method is best", first), "derived": section("derived", "Derived tables", derived_tables(results, stale)), "viewer": viewer,
+                "figures": section("figures", "Other figures" if first else "Figures", "\n".join(drawn.values())),
+                "settings": section("settings", "How it was made", facts(rows, runs) + settings(runs))}
     missing += [f"{name}: was not made from the records that are here now, so it is not shown." for name in sorted(stale)]
-    anchors = [("errors", "Errors and costs", True), ("derived", "Derived tables", sections["derived"]), ("images", "Images", viewer),
-               ("figures", "Figures", sections["figures"]), ("settings", "Settings", sections["settings"])]
+    anchors = [("answer", "Which method is best", first), ("images", "Images", viewer), ("errors", "Errors and costs", True),
+               ("figures", "Other figures", sections["figures"]), ("derived", "Derived tables", sections["derived"]),
+               ("settings", "How it was made", True)]
     experiments = ", ".join(distinct(rows["experiment"]))
     title = " / ".join(distinct(found(run, "title") for run in runs.values())) or experiments
     return Template(part("page.html")).substitute(
-        sections, experiments=escape(experiments), title=escape(title), style=part("page.css"), facts=facts(rows, runs),
-        missing=missing_list(missing),
+        sections, experiments=escape(experiments), title=escape(title), style=part("page.css"), extent=extent(rows),
+        warnings=listed("warnings", "To beware of", warnings(results, runs)), missing=listed("missing", "Missing from this folder", missing),
         contents=" · ".join(f'<a href="#{anchor}">{name}</a>' for anchor, name, there in anchors if there),
         scenes=scene_table(rows, runs), results="".join(error_table(scene) + cost_table(scene, runs) for scene in results.scenes()),
         data=data_of(scenes), script=part("page.js") + part("viewer.js"))

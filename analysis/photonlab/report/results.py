@@ -3,7 +3,7 @@
 import math
 from html import escape
 
-from photonlab.report.cells import NOTHING, number, table, three_digits, whole
+from photonlab.report.cells import NOTHING, least, number, table, three_digits, whole
 from photonlab.statistics import errors
 
 COMPONENT_NAMES = {"total": "whole image", "emission": "emission", "direct": "direct", "gathered": "gathered"}
@@ -70,18 +70,19 @@ def last_passes(scene):
 def error_table(scene):
     """A row a component and method, a column a metric: RMSE, then each that is described as one."""
     metrics = [column for column in scene.columns.metrics if column.name not in errors.SQUARED]
-    methods, lines = last_passes(scene), []
+    methods, lines, lights = last_passes(scene), [], []
     for component, name in COMPONENT_NAMES.items():
         for label, components in methods:
             if component in components:
+                lights.append(component)
                 last = components[component]
                 lines.append([label, name, whole(last["pass"].iloc[0]), number(last["seconds"].mean()), rmse_cell(last),
                               *(number(last[metric.name].mean(skipna=False)) for metric in metrics)])
     noise = "without" if errors.error_column(scene.rows) == "mse_unbiased" else "with"
-    note = f"RMSE, {noise} the reference's noise; the other errors hold it" if scene.rows["mse"].notna().any() else \
+    note = f"RMSE, {noise} the reference's noise; the other errors hold it; bold is the least of its light" if scene.rows["mse"].notna().any() else \
         "there is no reference, so there are none"
-    return table(f"{scene.scene}: errors of the last pass", note, [],
-                 ["method", "light", "pass", "seconds", "RMSE", *(metric.label for metric in metrics)], lines)
+    columns = ["method", "light", "pass", "seconds", "RMSE", *(metric.label for metric in metrics)]
+    return table(f"{scene.scene}: errors of the last pass", note, [], columns, lines, least(lines, lights, range(4, len(columns))))
 
 
 def cost_table(scene, runs):
@@ -104,15 +105,19 @@ def facts(rows, runs):
     def joined(separator, *places):
         return distinct(separator.join(filter(None, (found(run, *place) for place in places))) for run in runs.values())
 
-    extent = " · ".join(f"{count} {what}{'' if count == 1 else 's'}" for count, what in
-                        [(rows["scene"].nunique(), "scene"), (rows["method"].nunique(), "method"),
-                         (rows["seed"].nunique(), "seed"), (rows["run"].nunique(), "run")])
-    listed = [("Experiment", distinct(rows["experiment"])), ("Extent", [extent]), ("Date", [" to ".join(days)]),
+    listed = [("Experiment", distinct(rows["experiment"])), ("Extent", [extent(rows)]), ("Date", [" to ".join(days)]),
               ("Program", joined(" ", ("program", "name"), ("program", "version"), ("program", "commit"))),
               ("Compiler", joined(" ", ("program", "compiler"), ("program", "compiler_flags"))),
               ("Processor", joined("", ("processor",))), ("Threads", distinct(rows["threads"]))]
     return "<dl>" + "".join(f"<dt>{escape(term)}</dt><dd>{'<br>'.join(map(escape, texts))}</dd>"
                             for term, texts in listed if any(texts)) + "</dl>"
+
+
+def extent(rows):
+    """ "1 scene · 5 methods · 4 seeds · 20 runs"."""
+    return " · ".join(f"{count} {what}{'' if count == 1 else 's'}" for count, what in
+                      [(rows["scene"].nunique(), "scene"), (rows["method"].nunique(), "method"),
+                       (rows["seed"].nunique(), "seed"), (rows["run"].nunique(), "run")])
 
 
 def scene_table(rows, runs):

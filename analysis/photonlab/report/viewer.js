@@ -157,6 +157,7 @@ function describe(now) {
     setOutput("divider-place", `column ${slider("divider-place")}`);
     describeDifference(now);
     describePixel(zoom);
+    linkToView();
 }
 
 function setOutput(id, text) {
@@ -262,21 +263,97 @@ function flip() {
     setMode("flip");
 }
 
+const inside = (x, y) => [Math.min(Math.max(x, 0), scene.width - 1), Math.min(Math.max(y, 0), scene.height - 1)];
+
 function moveTo(x, y) {
-    place = [Math.min(Math.max(x, 0), scene.width - 1), Math.min(Math.max(y, 0), scene.height - 1)];
+    place = inside(x, y);
     describePixel(slider("zoom"));
+    linkToView();
+}
+
+// The wheel zooms about the pixel under the mouse, and scrolls the page where there is no step left.
+function zoomAt(event) {
+    const before = slider("zoom");
+    element("zoom").value = before - Math.sign(event.deltaY);
+    const ratio = slider("zoom") / before;
+    if (!a || !event.deltaY || ratio === 1) return;
+    event.preventDefault();
+    const stage = element("stage");
+    const [x, y] = [event.clientX, event.clientY].map((at, axis) =>
+        at - [stage.getBoundingClientRect().left, stage.getBoundingClientRect().top][axis]);
+    const [left, top] = [stage.scrollLeft, stage.scrollTop];
+    draw();
+    stage.scrollTo((left + x) * ratio - x, (top + y) * ratio - y);
+}
+
+// A view as the end of an address, by names, so that it outlives a report that is made again with more images.
+const choices = ["layer", "map", "gain", "exposure", "zoom", "divider-place"];
+
+function linkToView() {
+    const view = new URLSearchParams({scene: scene.name, mode: mode(), flipped: Number(flipped)});
+    for (const slot of ["a", "b"]) {
+        view.set(slot, chosen(slot).name);
+        view.set(`seed-${slot}`, shotOf(slot).seed ?? "");
+    }
+    for (const id of choices) view.set(id, element(id).value);
+    if (place) view.set("pixel", place.join());
+    element("link").href = `#view?${view}`;
+}
+
+// Shows the view that the address names; what this page does not have of it stays as it is.
+function followLink() {
+    if (!location.hash.startsWith("#view?")) return;
+    const view = new URLSearchParams(location.hash.slice(6));
+    const index = data.scenes.findIndex((one) => one.name === view.get("scene"));
+    if (index >= 0) element("scene").value = index;
+    showScene();
+    for (const slot of ["a", "b"]) {
+        const image = scene.images.findIndex((one) => one.name === view.get(slot));
+        if (image >= 0) element(`image-${slot}`).value = image;
+        fillSeeds(slot);
+        const seed = chosen(slot).seeds.findIndex((one) => String(one.seed ?? "") === view.get(`seed-${slot}`));
+        if (seed >= 0) element(`seed-${slot}`).value = seed;
+    }
+    for (const id of choices) if (view.has(id)) element(id).value = view.get(id);
+    flipped = view.get("flipped") === "1";
+    const radio = document.querySelector(`input[name=mode][value="${CSS.escape(view.get("mode") ?? "")}"]`);
+    if (radio) radio.checked = true;
+    const pixel = (view.get("pixel") ?? "").split(",").map(Number);
+    if (pixel.length === 2 && pixel.every(Number.isInteger)) place = inside(...pixel);
+    element("images").scrollIntoView();
+    load();
+}
+
+// The next value of a drop-down, after the last the first.
+function next(id) {
+    const select = element(id);
+    if (!select.disabled) select.selectedIndex = (select.selectedIndex + 1) % select.options.length;
+    load();
+}
+
+function chooseNumber(number, slot) {
+    const select = element(`image-${slot}`);
+    if (number > select.options.length) return;
+    select.selectedIndex = number - 1;
+    if (mode() === "flip") flipped = slot === "b";
+    fillSeeds(slot);
+    load();
 }
 
 const step = (x, y) => () => place ? moveTo(place[0] + x, place[1] + y)
     : moveTo(scene.width >> 1, scene.height >> 1);
-const keysOverPicture = {" ": flip, w: () => setMode("wipe"), d: () => setMode("difference")};
+const nextSeed = () => { next("seed-a"); next("seed-b"); };
+const keysOverPicture = {" ": flip, w: () => setMode("wipe"), d: () => setMode("difference"), l: () => next("layer"), s: nextSeed};
 const keysInPicture = {ArrowLeft: step(-1, 0), ArrowRight: step(1, 0), ArrowUp: step(0, -1), ArrowDown: step(0, 1)};
 
 function actionOf(event) {
     if (!a || event.ctrlKey || event.altKey || event.metaKey) return undefined;
-    const inside = document.activeElement === picture;
-    return (inside || picture.matches(":hover")) && keysOverPicture[event.key] ||
-        inside && keysInPicture[event.key] || undefined;
+    const hasFocus = document.activeElement === picture;
+    const digit = /^Digit([1-9])$/.exec(event.code);    // the key, whatever it writes with shift
+    if (digit && (hasFocus || picture.matches(":hover")))
+        return () => chooseNumber(Number(digit[1]), event.shiftKey ? "b" : "a");
+    return (hasFocus || picture.matches(":hover")) && keysOverPicture[event.key] ||
+        hasFocus && keysInPicture[event.key] || undefined;
 }
 
 function listenToKeys() {
@@ -293,6 +370,7 @@ function listenToKeys() {
 }
 
 function listenToMouse() {
+    picture.addEventListener("wheel", zoomAt, {passive: false});
     picture.addEventListener("pointermove", (event) => {
         if (!a) return;
         const box = canvas.getBoundingClientRect();
@@ -322,4 +400,6 @@ if (picture) {
     listenToMouse();
     listenToControls();
     showScene();
+    followLink();
+    addEventListener("hashchange", followLink);
 }

@@ -4,6 +4,7 @@ import base64
 import html
 import html.parser
 import json
+import re
 import unittest
 import zlib
 
@@ -213,6 +214,43 @@ class Page(InFolder):
         text = self.written_page()
         self.assertIn("No run.json", text)
         self.assertIn("<h1>made-up</h1>", text)
+
+    def test_the_conclusion_comes_first_and_then_the_figures_that_show_it(self):
+        make_results(self.results)
+        for name in ["other", "equal-time-cornell-box", "convergence-cornell-box", "strip-cornell-box"]:
+            write_figure(self.results, f"{name}.png")
+        text = html.unescape(self.written_page())
+        places = [text.index(part) for part in [
+            "cornell-box: PPM has the least RMSE after", "Which method is best: cornell-box", "<figcaption>equal-time-cornell-box.png",
+            "<figcaption>convergence-cornell-box.png", 'id="viewer"', "cornell-box: errors of the last pass",
+            "<figcaption>other.png", "<h2>How it was made"]]
+        self.assertEqual(places, sorted(places))
+        self.assertEqual(text.count("<figcaption>equal-time-cornell-box.png"), 1)
+        self.assertGreater(text.index("<figcaption>strip-cornell-box.png"), places[5])    # one row of pictures is enough
+
+    def test_the_best_of_each_light_is_marked(self):
+        make_results(self.results)
+        text = self.written_page()
+        marked = re.findall(r'aria-label="([^"]*), the best"', text)
+        self.assertEqual(marked, ["0.0158"] * 3)    # of the whole image, direct and gathered light; relMSE is the same for both
+
+    def test_warnings_are_about_something(self):
+        make_results(self.results)
+        self.assertNotIn('id="warnings"', self.written_page())
+        make_results(self.results, change=lambda row: row.update(
+            nonfinite="3" if row["mode"] else "0", reference_floor="1",
+            seconds=str(float(row["seconds"]) * (3 if row["seed"] == "2" and row["mode"] else 1))))
+        for place, file in enumerate(sorted(self.results.glob("runs/*/run.json"))):
+            record = json.loads(file.read_text())
+            record["reference"]["check"] = {"verdict": "disputed", "why": "photons find <more>."}
+            file.write_text(json.dumps({**record, "program": {"commit": f"c{place}"}, "counters": {"paths_cut": 2}}))
+        text = html.unescape(self.written_page())
+        for expected in ["its reference reference/box is disputed: photons find <more>.", "PM, radius has up to 3 pixels",
+                         "the reference's own noise, RMSE 1.0, is more than the error of PPM, 0.016",
+                         "the seconds of PM, radius differ from seed to seed by 71%", "of 4 versions of the program",
+                         "8 light paths were cut"]:
+            self.assertIn(expected, text)
+        self.assertNotIn("the seconds of PPM", text)
 
     def test_a_table_that_is_none_is_refused(self):
         make_results(self.results)
