@@ -38,7 +38,7 @@ def with_error(value, error):
         return "below resolution"
     if not error > 0:
         return f"{value:.3g}"
-    digits = max(0, -math.floor(math.log10(error)) + (f"{error:.0e}"[0] == "1"))
+    digits = max(0, -math.floor(math.log10(error)) + (f"{error:e}"[0] == "1"))
     return f"{value:.{digits}f} ± {error:.{digits}f}"
 
 
