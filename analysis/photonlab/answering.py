@@ -4,9 +4,9 @@ seeds, and its lead over the runner-up; or that this cannot be told, and how man
 Budgets are powers of four of the passes that all methods recorded, and of the seconds that all have, up to the largest; or those of
 --passes and --seconds. Errors between recorded passes are interpolated, and never beyond. An error is the root of the mean over seeds
 of the squared error, free of the reference's noise where the reference has two halves; its "±" is one standard error of that mean. A
-lead is by how much the runner-up's RMSE is larger, and is told where a test of the runner-up, and of every other method, against the best is significant at 5%: over pairs of seeds where
-the methods share them. "N more seeds would": so many more would make the test significant with a probability of 80%, if the difference
-and its spread are as they were seen.
+lead is by how much the runner-up's RMSE is larger. It is told where a test of the best against the runner-up, and against every other
+method, is significant at 5%, over pairs of seeds where the methods share them. "N more seeds would": so many more would make the test
+significant with a probability of 80%, if the difference and its spread are as they were seen.
 
 --between integrator lets the best method of each integrator compete, so that PM at its best meets PPM at its best.
 """

@@ -115,8 +115,8 @@ OF_LOOKS = ["scenes", "methods", "width", "no_caption", "format", "style"]    # 
 
 
 def options_of(command, arguments):
-    """The options of a command. `look` is what its figures are to look like, `is_asked` whether anything was asked for. Figures that are
-    to look otherwise, or are of a part of the records, are not those of the folder: they go to a folder of their own."""
+    """The options of a command. `look` is what its figures are to look like, `is_asked` whether anything was asked for. Figures that
+    are to look otherwise, or are of a part of the records, are not those of the folder: they go to a folder of their own."""
     parser = parser_of(command)
     options = parser.parse_args(arguments)
     asked = {name for name, value in vars(options).items() if value != parser.get_default(name)} - {"results", "rays"}

@@ -75,7 +75,7 @@ def said_by(command, results, options):
 
 
 def make_all(folder):
-    """All that a folder has, but what is there already; then the answers once more, where they are seen."""
+    """All that a folder has, but what is there already; and the answers last, where they are seen."""
     commands = [command for command in COMMANDS if command.can_start(folder)]
     kept = analysed.Kept(folder)
     read = {}    # what each way of reading made of the folder
@@ -87,14 +87,14 @@ def make_all(folder):
         if not command.is_for(results):
             continue
         said = kept.said(command.name, results.hash)
-        if said is None:
-            said = []
-            for text in said_by(command, results, options_of(command, [str(folder)])):
-                said.append(text)
-                print(text, flush=True) if command is not answering.COMMAND else None
+        is_new = said is None
+        if is_new:
+            said = list(said_by(command, results, options_of(command, [str(folder)])))
             kept.keep(command.name, results.hash, said)
         if command is answering.COMMAND:
             answer = said
+        elif is_new:
+            print(*said, sep="\n", flush=True)
     kept.write()
     print(*answer, sep="\n", flush=True)
 

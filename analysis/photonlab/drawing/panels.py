@@ -69,7 +69,9 @@ def set_titles(axes, left="", right=""):
 
 
 def name_row(panels, name):
-    """Names the vertical axis of a row, at each panel that begins a line."""
+    """Names the vertical axis of a row, at each panel that begins a line; smaller where it is longer than the panel."""
     for axes in panels:
         if axes.get_subplotspec().is_first_col():
-            axes.set_ylabel(name)
+            room = axes.get_position().height * axes.figure.get_figheight() + TOP
+            shown, size = text.fitted(name, room, style.size("label"))
+            axes.set_ylabel(shown, fontsize=size)

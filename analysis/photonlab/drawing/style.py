@@ -11,6 +11,7 @@ import math
 import matplotlib
 import matplotlib.pyplot as pyplot
 from matplotlib import ticker
+from matplotlib.font_manager import FontProperties
 
 from photonlab.drawing import text
 from photonlab.records import files, methods
@@ -89,9 +90,9 @@ def width():
 
 
 def size(of):
-    """Of text, in points: "title", "legend" or "small"."""
-    return SMALL * pyplot.rcParams["font.size"] if of == "small" else pyplot.rcParams[
-        "axes.titlesize" if of == "title" else "legend.fontsize"]
+    """Of text, in points: "title", "label", "legend" or "small"."""
+    names = {"title": "axes.titlesize", "label": "axes.labelsize", "legend": "legend.fontsize"}
+    return SMALL * pyplot.rcParams["font.size"] if of == "small" else FontProperties(size=pyplot.rcParams[names[of]]).get_size_in_points()
 
 
 def add_caption(figure, lines, left, top):

@@ -217,13 +217,14 @@ def make(results, options):
                          "`analysis decomposition` again")
     of_scene = {scene.scene: scene for scene in results.scenes()}
     extra = ("-roots" if options.roots else "") + (f"-{options.against}" if options.against != "passes" else "")
-    figures = ((name, draw(of_scene[name], own, options.against, options.roots, **options.look)) for name, own in rows.groupby("scene", sort=False))
+    figures = ((name, draw(of_scene[name], own, options.against, options.roots, **options.look))
+               for name, own in rows.groupby("scene", sort=False))
     return drawn_of_scenes("bias-variance", figures, "nothing is resolved, so there is nothing to draw", extra)
 
 
 def add_options(parser):
-    parser.add_argument("--against", choices=[name for name in AXES if name != "memory"], default="passes", help="the horizontal axis (default: passes); photons are "
-                        "the light paths emitted")
+    parser.add_argument("--against", choices=[name for name in AXES if name != "memory"], default="passes",
+                        help="the horizontal axis (default: passes); photons are the light paths emitted")
     parser.add_argument("--roots", action="store_true", help="draw RMSE and the roots of variance and squared bias, in radiance")
 
 

@@ -9,7 +9,7 @@ from matplotlib import lines
 
 from photonlab.command import Command
 from photonlab.drawing import style
-from photonlab.drawing.panels import filled, panels_over_legend, set_titles
+from photonlab.drawing.panels import filled, name_row, panels_over_legend, set_titles
 from photonlab.drawing.saving import Drawn
 
 BOUNDS = {"within_50": 0.5, "within_90": 0.9}
@@ -48,7 +48,7 @@ def draw(results, rows):
         set_titles(axes, scene)
         axes.set_xlabel("pass")
     for panels in grid:
-        panels[0].set_ylabel("share of pixels")
+        name_row(panels, "share of pixels")
     return figure
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import numpy
 
 from photonlab.command import Command, positive
-from photonlab.drawing import pictures, style
+from photonlab.drawing import pictures, style, text
 from photonlab.drawing.saving import Drawn
 from photonlab.records import images, references
 from photonlab.records.files import InputError
@@ -19,7 +19,8 @@ from photonlab.statistics import errors
 CELL = 1.5              # inches
 GAP = 0.05
 TEXT = 0.2              # under each picture
-LEFT, TOP, SCENE_GAP = 0.32, 0.3, 0.12
+TOP, SCENE_GAP = 0.3, 0.12
+SMALL = 7.5             # points
 
 
 def methods_of(scene):
@@ -72,7 +73,10 @@ def draw(scenes, given_exposure, note):
     passes = sorted({number for scene in scenes for _, shown in scene.methods for number in shown})
     has_reference = any(scene.reference is not None for scene in scenes)
     columns = len(passes) + has_reference
-    width = LEFT + columns * (CELL + GAP)
+    names = {(scene.scene, label): [*text.wrapped(scene.scene, CELL + TEXT, SMALL), *text.wrapped(label, CELL + TEXT, SMALL)]
+             for scene in scenes for label, _ in scene.methods}
+    left = 0.1 + max(text.height_of(lines, SMALL) for lines in names.values())
+    width = left + columns * (CELL + GAP)
     rows = sum(len(scene.methods) for scene in scenes)
     height = TOP + rows * (CELL + TEXT) + len(scenes) * SCENE_GAP + (TEXT if note else 0)
     figure = style.pyplot.figure(figsize=(width, height))
@@ -85,24 +89,24 @@ def draw(scenes, given_exposure, note):
         return axes
 
     for column, name in enumerate([f"pass {number}" for number in passes] + ["reference"] * has_reference):
-        figure.text((LEFT + column * (CELL + GAP) + CELL / 2) / width, 1 - 0.2 / height, name, ha="center", fontsize=9)
+        figure.text((left + column * (CELL + GAP) + CELL / 2) / width, 1 - 0.2 / height, name, ha="center", fontsize=9)
     y = TOP
     for scene in scenes:
         scale = given_exposure or scene.exposure
         for row, (label, shown) in enumerate(scene.methods):
-            figure.text(0.24 / width, 1 - (y + CELL / 2) / height, f"{scene.scene}\n{label}", rotation=90, ha="right",
-                        va="center", fontsize=7.5, linespacing=1.1)
+            figure.text((left - 0.04) / width, 1 - (y + CELL / 2) / height, "\n".join(names[scene.scene, label]), rotation=90,
+                        ha="right", va="center", multialignment="center", fontsize=SMALL, linespacing=text.LINE_HEIGHT)
             for column, number in enumerate(passes):
                 if number not in shown:
                     continue
-                image, text = shown[number]
-                axes = add_picture(image, LEFT + column * (CELL + GAP), y, scale)
-                axes.set_xlabel(text, fontsize=7, labelpad=2)
+                image, said = shown[number]
+                axes = add_picture(image, left + column * (CELL + GAP), y, scale)
+                axes.set_xlabel(said, fontsize=7, labelpad=2)
             if scene.reference is not None and row == 0:
-                add_picture(scene.reference, LEFT + len(passes) * (CELL + GAP), y, scale)
+                add_picture(scene.reference, left + len(passes) * (CELL + GAP), y, scale)
             y += CELL + TEXT
         y += SCENE_GAP
-    figure.text(LEFT / width, 0.06 / height, note, fontsize=7, color="#333333")
+    style.add_caption(figure, [note], left, 0.16)
     return figure
 
 

@@ -11,7 +11,7 @@ from matplotlib import lines
 
 from photonlab.command import Command, has
 from photonlab.drawing import style
-from photonlab.drawing.panels import filled, panels_over_legend, set_titles
+from photonlab.drawing.panels import filled, name_row, panels_over_legend, set_titles
 from photonlab.drawing.saving import Drawn
 from photonlab.records import methods, tables
 from photonlab.statistics import decomposition
@@ -87,7 +87,7 @@ def draw_sweep(rows):
         set_titles(axes, ", ".join(panel))
         axes.set_xlabel("initial radius (footprints)")
     for panels_of_row in grid:
-        panels_of_row[0].set_ylabel("MSE (radiance²)")
+        name_row(panels_of_row, "MSE (radiance²)")
     return figure
 
 

@@ -10,7 +10,7 @@ from matplotlib import lines
 
 from photonlab.command import Command, has
 from photonlab.drawing import style
-from photonlab.drawing.panels import panels_over_legend, set_titles
+from photonlab.drawing.panels import name_row, panels_over_legend, set_titles
 from photonlab.drawing.saving import drawn_of_scenes
 from photonlab.records import files, records, tables
 from photonlab.records.files import InputError
@@ -64,11 +64,11 @@ def draw(rows, labels, styles):
             if quantity != "radiance" and not values.empty:
                 style.logarithmic(axes.yaxis, values.min() / 1.15, values.max() * 1.15)
             style.logarithmic(axes.xaxis, 1 / 1.1, max(2, rows["pass"].max()) * 1.1, base_two=True)
-            if column == 0:
-                axes.set_ylabel(title)
             if row == 0:
                 set_titles(axes, f"{rows['scene'].iloc[0]}: {name}")
         grid[-1][column].set_xlabel("pass")
+    for row, title in zip(grid, QUANTITIES.values()):
+        name_row(row, title)
     figure.align_ylabels()
     return figure
 

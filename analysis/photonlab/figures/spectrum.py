@@ -4,8 +4,9 @@ the right, and two methods of one RMSE can differ by a factor of ten at either e
 The power is summed in rings of one cycle an image, and all rings with the frequency 0 add up to the unbiased MSE (the formula, after
 Celarek et al. 2019, is in statistics/spectrum.py); it is free of the reference's noise where the reference has two halves. Lines are
 means over the seeds that have snapshots; beyond eight cycles neighbouring rings are drawn as their mean, an eighth of an octave at a
-time, up to half a cycle a pixel: what is beyond, in the corners of the plane of frequencies, is in the sum and not drawn. What is not above 0 is below what this reference can resolve, and left out. The number beside a name is the share of the MSE that
-is in the mean of the picture, at the frequency 0, which has no place on the axis.
+time, up to half a cycle a pixel: what is beyond, in the corners of the plane of frequencies, is in the sum and not drawn. What is not
+above 0 is below what this reference can resolve, and left out. The number beside a name is the share of the MSE that is in the mean of
+the picture, at the frequency 0, which has no place on the axis.
 """
 
 import math
@@ -57,9 +58,10 @@ def draw(scene, found, component="total", number=None):
     handles = [lines.Line2D([], [], label=label + (f" (mean: {max(0.0, shares[label]):.1%})" if label in shares else ""), **styles[label])
                for label in curves]
     seeds = [count for *_, count in found.values()]
-    text = f"{COMPONENT_TITLES[component].capitalize()} after pass {number}, " if number else ""
-    caption = f"{text}means over {min(seeds)}{'' if min(seeds) == max(seeds) else f' to {max(seeds)}'} seeds. Rings of one cycle an image, " \
-        f"beyond {SINGLE} cycles means of neighbours; with the mean they sum to the MSE. {errors.noise_note(scene.rows)}"
+    of = f"{COMPONENT_TITLES[component].capitalize()} after pass {number}, " if number else ""
+    count = f"{min(seeds)}" if min(seeds) == max(seeds) else f"{min(seeds)} to {max(seeds)}"
+    caption = f"{of}means over {count} seeds. Rings of one cycle an image, beyond {SINGLE} cycles means of neighbours; with the mean " \
+        f"they sum to the MSE. {errors.noise_note(scene.rows)}"
     figure, grid = panels_over_legend(1, 1, handles, caption, panel_height=2.6)
     axes = grid[0][0]
     for label, (frequencies, powers) in curves.items():

@@ -30,8 +30,8 @@ def of_scene(scene):
         return ""
     last = [found for found in listed if found.others and found.unit == listed[-1].unit][-1:]
     said = "".join(f'<p class="said">{escape(scene.scene)}: {escape(sentence(found))}</p>' for found in last)
-    return said + table(f"Which method is best: {caption_of(scene, scene.scene, 'total')}", "± one standard error over seeds; a lead is by how much the runner-up's RMSE is "
-                        "larger", [], COLUMNS,
+    note = "± one standard error over seeds; a lead is by how much the runner-up's RMSE is larger"
+    return said + table(f"Which method is best: {caption_of(scene, scene.scene, 'total')}", note, [], COLUMNS,
                         [lines_of(found) for found in listed])
 
 
@@ -72,8 +72,8 @@ def of_reference(scene, runs):
         last = errors.last_pass(own[(own["component"] == "total") & own["mse"].notna()])
         floor, error = last["reference_floor"].max(), last[errors.error_column(last)].mean() if len(last) else 0.0
         if floor > error > 0:
-            said.append(f"{scene.scene}: the reference's own noise, RMSE {two_digits(errors.root(floor))}, is more than the error of {label}, "
-                        f"{two_digits(errors.root(error))}: more samples in the reference would tell that error better.")
+            said.append(f"{scene.scene}: the reference's own noise, RMSE {two_digits(errors.root(floor))}, is more than the error of "
+                        f"{label}, {two_digits(errors.root(error))}: more samples in the reference would tell that error better.")
     return list(dict.fromkeys(said))
 
 
@@ -89,8 +89,8 @@ def of_times(scene):
         own = scene.of_method(label)
         seconds = errors.last_pass(own[own["component"] == "total"])["seconds"]
         if len(seconds) > 1 and seconds.std() > UNSTEADY * seconds.mean():
-            said.append(f"{scene.scene}: the seconds of {label} differ from seed to seed by {seconds.std() / seconds.mean():.0%}: something "
-                        "else may have been running.")
+            said.append(f"{scene.scene}: the seconds of {label} differ from seed to seed by {seconds.std() / seconds.mean():.0%}: "
+                        "something else may have been running.")
     return said
 
 

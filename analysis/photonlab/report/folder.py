@@ -8,7 +8,7 @@ from photonlab.drawing.saving import records_of_png
 from photonlab.records import files, tables
 from photonlab.report.cells import cells, table
 
-DERIVED_TABLES = {"fits.csv": "Fits", "best-alphas.csv": "Best alphas",
+DERIVED_TABLES = {"metrics.csv": "Other metrics", "fits.csv": "Fits", "best-alphas.csv": "Best alphas",
                   "decomposition.csv": "Variance and squared bias"}
 
 
@@ -22,8 +22,8 @@ def figures(results, stale):
 
 
 def derived_table(name, title, rows, results):
-    """A CSV that another command wrote. Settings are named by the method that the records give them, and what is the same in all
-    rows is said once, above."""
+    """A CSV that another command wrote. The name of a method stands for its settings, and what is the same in all rows is said once,
+    above."""
     notes = []
     if name == "decomposition.csv" and "pass" in rows.columns and not rows.empty:
         passes = tables.to_numbers(name, rows["pass"], whole=True)
@@ -31,12 +31,8 @@ def derived_table(name, title, rows, results):
         last = passes.groupby(owner).transform("max") if owner else passes.max()
         rows = rows[passes == last]
         notes.append("the last pass alone; the file has all of them")
-    settings = ["scene", *results.columns.settings]
-    if set(settings) <= set(rows.columns):
-        known = results.rows[[*settings, "method"]].drop_duplicates()
-        methods = rows[settings].merge(known, on=settings, how="left")["method"]
-        rows = rows.assign(point=methods.fillna("").to_numpy()).rename(columns={"point": "method"})
-        rows = rows.drop(columns=results.columns.table_settings, errors="ignore")
+    if "method" in rows.columns:    # which says all that they do
+        rows = rows.drop(columns=["point", *results.columns.table_settings], errors="ignore")
     rows = rows[[column for column in rows.columns if (rows[column] != "").any()]]
     if len(rows.drop_duplicates()) > 1:
         same = [column for column in rows.columns if rows[column].nunique() == 1]

@@ -60,7 +60,8 @@ def page(results, seeds):
                                                       noise=errors.noise_note(rows)) if scenes else ""
     drawn = figures(results, stale)
     first = conclusion(results, drawn)
-    sections = {"answer": section("answer", "Which method is best", first), "derived": section("derived", "Derived tables", derived_tables(results, stale)), "viewer": viewer,
+    sections = {"answer": section("answer", "Which method is best", first), "viewer": viewer,
+                "derived": section("derived", "Derived tables", derived_tables(results, stale)),
                 "figures": section("figures", "Other figures" if first else "Figures", "\n".join(drawn.values())),
                 "settings": section("settings", "How it was made", facts(rows, runs) + settings(runs))}
     missing += [f"{name}: was not made from the records that are here now, so it is not shown." for name in sorted(stale)]
@@ -78,8 +79,7 @@ def page(results, seeds):
 
 
 def make(results, options):
-    text = page(results, options.seeds)
-    yield f"{files.replace_file(results.folder / 'report.html', text)} ({len(text) / 1e6:.1f} MB)"
+    yield files.replace_file(results.folder / "report.html", page(results, options.seeds))
 
 
 def add_options(parser):

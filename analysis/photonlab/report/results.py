@@ -79,8 +79,9 @@ def error_table(scene):
                 lines.append([label, name, whole(last["pass"].iloc[0]), number(last["seconds"].mean()), rmse_cell(last),
                               *(number(last[metric.name].mean(skipna=False)) for metric in metrics)])
     noise = "without" if errors.error_column(scene.rows) == "mse_unbiased" else "with"
-    note = f"RMSE, {noise} the reference's noise; the other errors hold it; bold is the least of its light" if scene.rows["mse"].notna().any() else \
-        "there is no reference, so there are none"
+    note = f"RMSE, {noise} the reference's noise; the other errors hold it; bold is the least of its light"
+    if scene.rows["mse"].isna().all():
+        note = "there is no reference, so there are none"
     columns = ["method", "light", "pass", "seconds", "RMSE", *(metric.label for metric in metrics)]
     return table(f"{scene.scene}: errors of the last pass", note, [], columns, lines, least(lines, lights, range(4, len(columns))))
 

@@ -20,7 +20,7 @@ MEASURED = ["seeds", "groups", "paths_emitted", "seconds", *(f"{quantity}{part}"
 
 def columns_of(columns):
     """Of the table; `columns` are those of the records."""
-    return ["experiment", "scene", "point", *columns.table_settings, "pass", "component", "region", "pixels", *MEASURED,
+    return ["experiment", "scene", "point", "method", *columns.table_settings, "pass", "component", "region", "pixels", *MEASURED,
             "reference_floor"]
 
 
@@ -38,7 +38,7 @@ def table_of(ensemble, results, own):
         for (number, region), moments in moments_of(ensemble, results, component).items():
             of_pass = own[(own["pass"] == number) & (own["component"] == component)]
             table.append({
-                "experiment": first["experiment"], "scene": first["scene"], "point": ensemble.point,
+                "experiment": first["experiment"], "scene": first["scene"], "point": ensemble.point, "method": first["method"],
                 **methods.table_settings(own, results.columns), "pass": number, "component": component,
                 "region": region, "pixels": moments.pixels, "seeds": int(moments.counts.sum()),
                 "groups": len(moments.counts), "paths_emitted": text(of_pass["paths_emitted"].mean()),

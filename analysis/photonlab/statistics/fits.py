@@ -38,7 +38,7 @@ NAME = "fits.csv"
 
 def columns_of(columns):
     """Of the table; `columns` are those of the records."""
-    return ["experiment", "scene", "point", *columns.table_settings, "component", "region", "quantity", "first_pass", "last_pass",
+    return ["experiment", "scene", "point", "method", *columns.table_settings, "component", "region", "quantity", "first_pass", "last_pass",
             "passes", "seeds", "slope", "low", "high", "asymptote", "edge", "predicted", "predicted_edge", "verdict"]
 
 
@@ -69,7 +69,7 @@ def fits_of(ensemble, own, moments, component, passes, columns):
         for quantity, (slope, low, high, expected, at_edges, verdict) in found.items():
             smooth, edge = theory.asymptotes(first, component)[quantity]
             table.append({
-                "experiment": first["experiment"], "scene": first["scene"], "point": ensemble.point,
+                "experiment": first["experiment"], "scene": first["scene"], "point": ensemble.point, "method": first["method"],
                 **methods.table_settings(own, columns), "component": component, "region": region,
                 "quantity": quantity, "first_pass": passes[0], "last_pass": passes[-1], "passes": len(passes),
                 "seeds": int(of_region[passes[0]].counts.sum()), "slope": text(slope), "low": text(low), "high": text(high),

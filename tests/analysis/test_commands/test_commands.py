@@ -24,7 +24,8 @@ IMAGES = [f"{RUN}/run.json", f"{RUN}/snapshots/pass-000032.exr", "reference/half
 SUMS = ["ensembles/cornell-box_b/ensemble.json", "ensembles/cornell-box_b/slot-02.exr", "reference/half_a.exr"]
 READS = {"convergence": [], "strip": IMAGES, "gallery": IMAGES, "decomposition": SUMS, "fits": SUMS,
          "bias_variance": ["decomposition.csv"], "memory": [], "best_alpha": ["best-alphas.csv"], "grid": IMAGES,
-         "equal_time": [*IMAGES[:2], "decomposition.csv"], "equal_error": IMAGES[:2], "spectrum": IMAGES, "metrics": IMAGES, "answer": [], "time_to_error": [], "tradeoff": [], "probes": ["probes.csv"], "scaling": [],
+         "equal_time": [*IMAGES[:2], "decomposition.csv"], "equal_error": IMAGES[:2], "spectrum": IMAGES,
+         "metrics": IMAGES, "answer": [], "time_to_error": [], "tradeoff": [], "probes": ["probes.csv"], "scaling": [],
          "report": [*IMAGES, "fits.csv", "decomposition.csv"]}
 FIGURES = {"convergence": ["convergence-cornell-box"], "strip": ["strip-cornell-box"], "gallery": ["gallery"],
            "bias_variance": ["bias-variance-cornell-box"], "memory": ["memory-cornell-box"], "best_alpha": ["best-alpha-cornell-box"],

@@ -70,7 +70,7 @@ class Looks(InFolder):
 
     def figures(self, **look):
         found = self.read()
-        for kind in ["convergence", "strip", "equal_time", "equal_error", "memory", "spectrum", "time_to_error"]:
+        for kind in ["convergence", "strip", "gallery", "equal_time", "equal_error", "memory", "spectrum", "time_to_error"]:
             options = {"all": True} if kind == "strip" else {}
             for name, figure in figures.of(kind, found, **look, **options).items():
                 yield name, figure
@@ -78,6 +78,8 @@ class Looks(InFolder):
     def test_with_seven_long_names_nothing_leaves_the_page_or_overprints(self):
         for width in [None, WIDTH]:
             for name, figure in self.figures(width=width):
+                if name == "gallery" and width:    # which is as wide as its passes
+                    continue
                 texts = [*figure.texts, *(text for legend in figure.legends for text in legend.get_texts()),
                          *(title for axes in figure.axes for title in [axes.title, axes._left_title, axes._right_title])]
                 found = boxes(figure, texts)

@@ -134,11 +134,12 @@ class Page(InFolder):
 
     def test_settings_in_tables_of_other_tools_are_named_by_the_method(self):
         make_results(self.results)
-        columns = ["scene", "point", *before_descriptions().settings, "slope"]
-        lines = [",".join({**synthetic.BASE, **settings, "point": "p", "slope": slope}[column] for column in columns)
-                 for settings, slope in [(synthetic.PM_RADIUS, "-0.25"), ({"alpha": "0.7"}, "-0.5")]]
+        columns = ["scene", "point", "method", *before_descriptions().settings, "slope"]
+        lines = [",".join({**synthetic.BASE, **settings, "point": "p", "method": method, "slope": slope}[column].replace(",", "")
+                          for column in columns)
+                 for method, settings, slope in [("PM radius", synthetic.PM_RADIUS, "-0.25"), ("PPM", {"alpha": "0.7"}, "-0.5")]]
         write_derived(self.results, "fits.csv", "\n".join([",".join(columns), *lines]))
-        self.assertEqual(self.row_of(self.written_page(), "Fits (fits.csv)", "PM, radius"), ["PM, radius", "−0.25"])
+        self.assertEqual(self.row_of(self.written_page(), "Fits (fits.csv)", "PM radius"), ["PM radius", "−0.25"])
 
     def test_what_is_missing_is_said(self):
         make_results(self.results, reference="somewhere/else")
