@@ -31,7 +31,12 @@ FIGURE = "figure"        # may stand before the name of one: `photonlab figure c
 
 def main(arguments):
     """Does what the arguments say; returns the exit code."""
-    arguments = arguments[1:] if arguments[:1] in [[ALL], [FIGURE]] and len(arguments) > 1 else arguments
+    first, rest = arguments[:1], arguments[1:]
+    kinds = [command.name for command in COMMANDS if command.draws]
+    if first == [FIGURE] and rest[:1] not in [[kind] for kind in kinds]:
+        return complain(f"{FIGURE}: expected a kind, one of {', '.join(kinds)}")
+    if first == [FIGURE] or (first == [ALL] and rest):
+        arguments = rest
     if arguments and arguments[0] in [command.name for command in COMMANDS]:
         return answered(lambda: make(arguments))
     return answered(lambda: make_all(folder_in(arguments)))

@@ -27,7 +27,8 @@ PATTERNS = [[(0, (5, 1.5)), (0, (5, 1.5, 1, 1.5)), (0, (5, 1.5, 1, 1.5, 1, 1.5))
             [(0, (1, 1.2)), (0, (1, 2.4))],
             [(0, (3, 1)), (0, (3, 1, 1, 1)), (0, (3, 1, 1, 1, 1, 1)), (0, (3, 1, 3, 3))]]
 
-LIGHT_TITLES = {"gathered": "gathered light", "total": "whole picture"}    # what figures of bias and variance are of
+LIGHT_TITLES = {"gathered": "gathered light", "total": "whole picture", "direct": "direct light",
+                "emission": "emission"}    # what figures of bias and variance are of
 BELOW_MARK = {"linestyle": "none", "marker": 7, "markersize": 4.5, "zorder": 5}    # of what is below resolution; 7: points down
 DIFFERENCE_COLOURS = "PuOr_r"    # both ends dark, zero white: in grey the size of an error stays, its sign goes
 FULL_WIDTH = 6.6    # inches; text of 9 points can still be read where the page shrinks it to a column

@@ -22,7 +22,7 @@ from photonlab.drawing import style
 from photonlab.drawing.panels import name_row, panels_over_legend, set_titles
 from photonlab.drawing.places import AXES
 from photonlab.drawing.saving import drawn_of_scenes
-from photonlab.records import methods
+from photonlab.records import methods, records
 from photonlab.records.files import InputError
 from photonlab.statistics import decomposition, slopes, theory
 
@@ -181,10 +181,11 @@ def handles_of(scene, shown, styles):
 
 
 @style.drawn
-def draw(scene, rows, against="passes", roots=False):
-    """The figure of the records of one scene and its rows of decomposition.csv; None when nothing in it is resolved."""
+def draw(scene, rows, against="passes", roots=False, component=None):
+    """The figure of the records of one scene and its rows of decomposition.csv; None when nothing in it is resolved. Without a
+    component it is of the gathered light, where that is known."""
     titles, shape, unit = (ROOT_TITLES, numpy.sqrt, "radiance") if roots else (TITLES, lambda values: values, "radiance²")
-    styles, component = style.method_styles(scene), component_to_draw(rows)
+    styles, component = style.method_styles(scene), component or component_to_draw(rows)
     rows = rows[rows["pass"] > 0]    # a logarithmic axis has no place for it
     shown = [row_of(scene, rows, component, region, against, shape) for region in rows["region"].drop_duplicates()]
     shown = [row for row in shown if row]
@@ -217,12 +218,16 @@ def make(results, options):
                          "`analysis decomposition` again")
     of_scene = {scene.scene: scene for scene in results.scenes()}
     extra = ("-roots" if options.roots else "") + (f"-{options.against}" if options.against != "passes" else "")
-    figures = ((name, draw(of_scene[name], own, options.against, options.roots, **options.look))
-               for name, own in rows.groupby("scene", sort=False))
-    return drawn_of_scenes("bias-variance", figures, "nothing is resolved, so there is nothing to draw", extra)
+    for component in options.components:
+        figures = ((name, draw(of_scene[name], own, options.against, options.roots, component, **options.look))
+                   for name, own in rows.groupby("scene", sort=False))
+        yield from drawn_of_scenes("bias-variance", figures, "nothing is resolved, so there is nothing to draw",
+                                   extra + (f"-{component}" if component else ""))
 
 
 def add_options(parser):
+    parser.add_argument("--components", choices=records.COMPONENTS, nargs="+", default=[None], help="which light, a figure each "
+                        "(default: gathered, where the reference has it)")
     parser.add_argument("--against", choices=[name for name in AXES if name != "memory"], default="passes",
                         help="the horizontal axis (default: passes); photons are the light paths emitted")
     parser.add_argument("--roots", action="store_true", help="draw RMSE and the roots of variance and squared bias, in radiance")

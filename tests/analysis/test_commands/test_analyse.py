@@ -73,7 +73,11 @@ class Analyse(unittest.TestCase):
             made, _ = self.made(self.results)
         self.assertIn("figures/convergence-cornell-box.png", made)
 
-    def test_the_word_figure_may_stand_before_a_figure(self):
+    def test_the_word_figure_may_stand_before_a_figure_alone(self):
+        for arguments in [["figure"], ["figure", self.results], ["figure", "report", self.results]]:
+            code, _, said = run(*arguments)
+            self.assertEqual(code, 2)
+            self.assertIn("figure: expected a kind, one of convergence, strip", said)
         made, _ = self.made("figure", "convergence", self.results, "--metric", "mse")
         self.assertEqual(made, {"figures/convergence-cornell-box-mse.png", "figures/convergence-cornell-box-mse.pdf"})
 
