@@ -34,7 +34,7 @@ def make(results, options):
     for scene in results.scenes():
         number = snapshots.last_common_pass(scene)
         for component in options.components if number else []:
-            for label, shown, halves in snapshots.judged_images(scene, component, number):
+            for label, shown, halves in snapshots.judged_images(scene, component, dict.fromkeys(scene.labels, number)):
                 exposure = options.exposure or pictures.exposure_for(sum(halves) / 2)
                 table.append(row_of(scene, component, number, label, shown, halves, float(exposure)))
     if not table:

@@ -1,4 +1,4 @@
-"""Pictures of all seeds of a method at one pass, with what they are judged by."""
+"""Pictures of all seeds of a method at a pass, with what they are judged by."""
 
 from photonlab.records import images, references
 
@@ -35,9 +35,9 @@ def images_of(scene, label, component, number):
     return [image for image in found if image is not None]
 
 
-def judged_images(scene, component, number):
-    """(label, [image], [A, B]) of each method that has both, at one pass."""
-    for label in scene.labels:
+def judged_images(scene, component, passes):
+    """(label, [image], [A, B]) of each method that has both, at its pass, {label: pass}."""
+    for label, number in passes.items():
         halves = halves_of(scene, label, component)
         shown = images_of(scene, label, component, number) if halves else []
         if shown:

@@ -103,6 +103,7 @@ class Commands(InFolder):
         self.assert_drawn(self.output_of("spectrum"), "spectrum-cornell-box")
         mse = sum(float(row["mse"]) for row in rows if row["component"] == "total") / 2
         self.assertAlmostEqual(sum(float(row["power"]) for row in self.table("spectrum.csv")), mse, places=9)
+        self.assert_drawn(self.output_of("spectrum", "--at", "0.1"), "spectrum-cornell-box")
         self.output_of("metrics", "--exposure", "0.5")
         row, = self.table("metrics.csv")
         self.assertAlmostEqual(float(row["mse"]), mse, places=9)
