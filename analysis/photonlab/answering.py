@@ -46,8 +46,9 @@ def error_text(found):
     return with_error(*answers.root_with_error(found.best.mean, found.best.error))
 
 
-def lead_text(found):
-    relative, error = answers.relative_lead(found)
+def lead_text(found, place=0):
+    """Of the lead over one of the others; the first is the runner-up."""
+    relative, error = answers.relative_lead(found, place)
     return "a lead that is not resolved" if math.isnan(relative) else f"{with_error(100 * relative, 100 * error)}%"
 
 
@@ -68,11 +69,12 @@ def verdict_text(found):
         return f"the same as {runner_up}"
     if verdict == answers.TOLD:
         return f"{lead_text(found)} over {runner_up}"
-    tied = found.tied
-    of_them = f"{tied[0]}" if len(tied) == 1 else f"{tied[0]} and {len(tied) - 1} other{'' if len(tied) == 2 else 's'}"
+    places = [place for place, lead in enumerate(found.leads) if not lead.is_told]
+    first = f"cannot tell from {found.others[places[0]].label} (lead {lead_text(found, places[0])})"
+    of_them = first if len(places) == 1 else f"{first} and {len(places) - 1} other{'' if len(places) == 2 else 's'}"
     if verdict == answers.ONE_SEED:
-        return f"cannot tell from {of_them}: with one seed nothing is known of the spread; 3 more seeds would show it"
-    return f"cannot tell from {of_them} (lead {lead_text(found)}); {seeds_text(found.more_seeds)}"
+        return f"{of_them}: with one seed nothing is known of the spread; 3 more seeds would show it"
+    return f"{of_them}; {seeds_text(found.more_seeds)}"
 
 
 def lines_of(found):

@@ -52,8 +52,8 @@ def set_in_columns(handles, width):
     for handle in handles:
         lines.append(text.wrapped(handle.get_label(), (width + between) / columns - between - beside, size))
         handle.set_label("\n".join(lines[-1]))
-    heights = [sum((1 + SPACING["label"] + text.LINE_HEIGHT * (len(of_label) - 1)) * size / 72 for of_label in column)
-               for column in numpy.array_split(numpy.array(lines, dtype=object), columns)]
+    heights = [sum((1 + SPACING["label"] + text.LINE_HEIGHT * (len(lines[place]) - 1)) * size / 72 for place in column)
+               for column in numpy.array_split(range(len(lines)), columns)]    # as matplotlib deals entries to columns
     return max(heights) + 0.08, columns
 
 

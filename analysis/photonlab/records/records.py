@@ -57,7 +57,7 @@ class Records:
             if column.type != "text" and frame[column.name].dtype == object:
                 frame[column.name] = pandas.to_numeric(frame[column.name], errors="coerce")
             elif column.kind == "setting":
-                frame[column.name] = frame[column.name].replace("", numpy.nan)
+                frame[column.name] = frame[column.name].where(frame[column.name] != "")
         frame["method"] = pandas.Categorical(frame["method"], self.labels, ordered=True)
         frame.attrs["units"] = {column.name: column.unit for column in self.columns if column.unit and column.name in frame}
         return frame

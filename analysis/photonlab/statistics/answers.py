@@ -280,9 +280,10 @@ def root_with_error(mean, error):
     return value, error / (2 * value) if value > 0 else math.nan
 
 
-def relative_lead(found):
-    """(by which part of the best one's RMSE the runner-up's is larger, its standard error); NaN where an error is not resolved."""
-    best, other, lead = found.best, found.runner_up, found.leads[0]
+def relative_lead(found, place=0):
+    """(by which part of the best one's RMSE that of one of the others is larger, its standard error); NaN where an error is not
+    resolved. The first of the others is the runner-up."""
+    best, other, lead = found.best, found.others[place], found.leads[place]
     if not best.mean > 0:
         return math.nan, math.nan
     ratio = math.sqrt(other.mean / best.mean)

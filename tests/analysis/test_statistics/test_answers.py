@@ -5,6 +5,7 @@ import unittest
 
 import numpy
 
+from photonlab import answering
 from photonlab.statistics import answers
 from photonlab.statistics.answers import Standing
 from support import synthetic
@@ -87,6 +88,7 @@ class Leads(unittest.TestCase):
         found = verdict_of([Standing("a", dict.fromkeys(range(4), 1.0)), Standing("b", dict.fromkeys(range(4), 1.5)),
                             Standing("c", dict(enumerate(2.0 + noise)))])
         self.assertEqual((found.verdict, found.tied), (answers.CANNOT_TELL, ["c"]))
+        self.assertRegex(answering.verdict_text(found), r"^cannot tell from c \(lead 41")    # the root of 2, and no more
         self.assertGreater(found.more_seeds, 1)
 
 
@@ -160,7 +162,7 @@ class Command(InFolder):
     def test_one_seed_is_answered_as_far_as_it_goes(self):
         self.write(seeds=[1])
         said = self.output_of("answer")
-        self.assertIn("cannot tell from PM, radius: with one seed nothing is known of the spread", said)
+        self.assertRegex(said, r"cannot tell from PM, radius \(lead [\d.]+%\): with one seed nothing is known of the spread")
         self.assertIn("`seeds = 4`", said)
 
     def test_a_lead_that_cannot_be_told_says_how_many_more_seeds_would(self):
