@@ -37,11 +37,11 @@ class Kept:
         except (InputError, AttributeError, KeyError):
             pass
 
-    def said(self, command, records):
-        """What a command said when it made of these records what is still there; None where it is to be made."""
+    def said(self, command, made_from):
+        """What a command said when it made of the same what is still there; None where it is to be made."""
         entry = self.before.get(command) if isinstance(self.before, dict) else None
         try:
-            if entry["made_from"] != [records, *self.inputs] or not all(
+            if entry["made_from"] != [made_from, *self.inputs] or not all(
                     self.hash_of(name) == known for name, known in entry["files"].items()):
                 return None
             self.now[command] = entry
@@ -52,10 +52,10 @@ class Kept:
     def hash_of(self, name):
         return kept_files.hash_of(files.read_bytes(self.folder / name))
 
-    def keep(self, command, records, said):
+    def keep(self, command, made_from, said):
         """Keeps what a command has made: what it says by its name is a file of the folder."""
         written = [Path(text).relative_to(self.folder) for text in said if isinstance(text, Path)]
-        self.now[command] = {"made_from": [records, *self.inputs], "said": [str(text) for text in said],
+        self.now[command] = {"made_from": [made_from, *self.inputs], "said": [str(text) for text in said],
                              "files": {str(name): self.hash_of(name) for name in written}}
 
     def write(self):

@@ -77,6 +77,7 @@ class Command:
     is_for: Callable = lambda results: True    # whether it is among what is drawn of a folder when all is
     add_options: Callable = lambda parser: None
     draws: bool = False        # figures, which can be asked to look otherwise
+    made_from: Callable = lambda results: results.hash    # what tells whether it is to be made again
 
     def can_start(self, folder):
         return files.is_there(Path(folder) / self.starts_from)

@@ -91,11 +91,12 @@ def make_all(folder):
         results = read[command.read]
         if not command.is_for(results):
             continue
-        said = kept.said(command.name, results.hash)
+        made_from = command.made_from(results)
+        said = kept.said(command.name, made_from)
         is_new = said is None
         if is_new:
             said = list(said_by(command, results, options_of(command, [str(folder)])))
-            kept.keep(command.name, results.hash, said)
+            kept.keep(command.name, made_from, said)
         if command is answering.COMMAND:
             answer = said
         elif is_new:

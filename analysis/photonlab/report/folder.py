@@ -5,11 +5,17 @@ import json
 from html import escape
 
 from photonlab.drawing.saving import records_of_png
-from photonlab.records import files, tables
+from photonlab.records import files, kept_files, tables
 from photonlab.report.cells import cells, table
 
 DERIVED_TABLES = {"metrics.csv": "Other metrics", "fits.csv": "Fits", "best-alphas.csv": "Best alphas",
                   "decomposition.csv": "Variance and squared bias"}
+
+
+def shown_files(results):
+    """The figures and tables of the folder."""
+    return [*sorted((results.folder / "figures").glob("*.png")),
+            *(results.folder / name for name in DERIVED_TABLES if files.is_there(results.folder / name))]
 
 
 def figures(results, stale):
@@ -19,6 +25,14 @@ def figures(results, stale):
     return {file.name: f'<figure><img alt="{escape(file.name)}" src="data:image/png;base64,{base64.b64encode(data).decode()}">'
             f"<figcaption>{escape(file.name)}</figcaption></figure>" for file, data in drawn.items()
             if records_of_png(data) == results.hash}
+
+
+def made_from(results):
+    """The hash of all that the page is made from: the records, figures and tables."""
+    hashed = kept_files.running_hash(results.hash.encode())
+    for file in shown_files(results):
+        hashed.update(str(file.name).encode() + files.read_bytes(file))
+    return hashed.hexdigest()
 
 
 def derived_table(name, title, rows, results):

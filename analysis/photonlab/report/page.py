@@ -18,7 +18,7 @@ from photonlab.command import Command, whole_positive
 from photonlab.drawing import style
 from photonlab.records import files
 from photonlab.report.conclusion import conclusion, warnings
-from photonlab.report.folder import derived_tables, figures, settings
+from photonlab.report.folder import derived_tables, figures, made_from, settings
 from photonlab.report.results import cost_table, distinct, error_table, extent, facts, found, read_runs, scene_table
 from photonlab.report.viewer import seeds_left_out, viewer_scenes
 from photonlab.statistics import errors
@@ -90,4 +90,4 @@ def add_options(parser):
 COMMAND = Command(
     name="report", summary="all of it as one HTML page that needs nothing else", about=__doc__,
     writes="report.html",
-    make=make, add_options=add_options)
+    make=make, made_from=made_from, add_options=add_options)

@@ -78,8 +78,13 @@ class Analyse(unittest.TestCase):
             code, _, said = run(*arguments)
             self.assertEqual(code, 2)
             self.assertIn("figure: expected a kind, one of convergence, strip", said)
+        run(self.results)
         made, _ = self.made("figure", "convergence", self.results, "--metric", "mse")
-        self.assertEqual(made, {"figures/convergence-cornell-box-mse.png", "figures/convergence-cornell-box-mse.pdf"})
+        drawn = {f"figures/convergence-cornell-box-mse.{kind}" for kind in ["png", "pdf"]}
+        self.assertEqual(made, drawn)
+        self.assertEqual(self.made(self.results)[0], {"report.html", "analysis.json"})    # which shows it
+        for name in drawn:
+            (self.results / name).unlink()
 
 
 class Table(InFolder):
