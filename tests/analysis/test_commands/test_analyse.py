@@ -1,13 +1,17 @@
 """What `analyse` does of a folder is done once: again where something has changed, and where a file is not as it was written."""
 
 import json
+import os
+import shutil
+import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
 from unittest import mock
 
 from photonlab.typesetting import in_latex
-from support import synthetic
+from support import ANALYSIS, synthetic
 from support.in_folder import InFolder, run
 
 
@@ -85,6 +89,18 @@ class Analyse(unittest.TestCase):
         self.assertEqual(self.made(self.results)[0], {"report.html", "analysis.json"})    # which shows it
         for name in drawn:
             (self.results / name).unlink()
+
+
+class Installed(InFolder):
+    def test_the_package_works_where_it_is_copied_to(self):
+        """As `cmake --install` or a Debian package places it: the folder alone, somewhere on Python's path."""
+        synthetic.write_csv(self.results / "results", synthetic.rows(lambda seed, number, component: seed / max(1, number)))
+        shutil.copytree(ANALYSIS / "photonlab", self.results / "lib/photonlab", ignore=shutil.ignore_patterns("__pycache__"))
+        for command in [["-m", "photonlab", "analyse", "results"], ["-c", "import photonlab; print(photonlab.load('results').labels)"]]:
+            done = subprocess.run([sys.executable, *command], cwd=self.results, capture_output=True, text=True,
+                                  env={**os.environ, "PYTHONPATH": str(self.results / "lib"), "PYTHONDONTWRITEBYTECODE": "1"})
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertIn("PPM", done.stdout)
 
 
 class Table(InFolder):
