@@ -73,7 +73,7 @@ def said_by(command, results, options):
     for said in command.make(results, options):
         if isinstance(said, saving.Drawn):
             yield from saving.save(said, results, options.output, options.format, not options.no_caption)
-        elif isinstance(said, tables.Derived):
+        elif isinstance(said, (tables.Derived, tables.Words)):
             yield tables.write_derived(results, said)
         else:
             yield said

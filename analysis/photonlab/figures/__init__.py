@@ -21,5 +21,7 @@ def of(kind, results, *, width=None, style=None, scenes=None, methods=None, **op
     if unknown:
         raise InputError(f"{kind} has no option {min(unknown)}; it has {', '.join(vars(chosen))}")
     vars(chosen).update(options, look={"width": width, "style": style})
-    made = commands[kind].make(results.only(scenes, methods), chosen)
+    if scenes or methods:
+        results = results.only(scenes, methods)
+    made = commands[kind].make(results, chosen)
     return {said.name: said.figure for said in made if isinstance(said, Drawn)}

@@ -20,7 +20,7 @@ from photonlab.command import Command
 from photonlab.drawing import style
 from photonlab.drawing.panels import panels_over_legend, set_titles
 from photonlab.drawing.saving import RECORDS, drawn_of_scenes
-from photonlab.records import files, tables
+from photonlab.records import tables
 from photonlab.records.columns import as_number
 from photonlab.statistics import errors
 from photonlab.statistics.tradeoff import (CLOCKS, COLUMNS, DEFAULT, NAME, defaults_of, is_default, points_of, table_of, words)
@@ -83,8 +83,7 @@ def make(results, options):
     yield tables.Derived(NAME, COLUMNS, [row for table in of_scenes for row in table])
     noise = errors.noise_note(results.rows[results.rows["component"] == "total"])
     text = f"{words(of_scenes, clock, noise)}\n<!-- {RECORDS} {results.hash} -->\n"
-    if not results.is_part:
-        yield files.replace_file(results.folder / "tradeoff.md", text)
+    yield tables.Words("tradeoff.md", text)
     figures = ((scene.scene, draw(table, results.columns, clock, noise, **options.look)) for scene, table in zip(scenes, of_scenes))
     yield from drawn_of_scenes("tradeoff", figures, "nothing is resolved, so there is nothing to draw")
 

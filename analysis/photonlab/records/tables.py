@@ -71,11 +71,20 @@ class Derived:
     rows: list
 
 
+@dataclass
+class Words:
+    """What is said of records in a text of its own."""
+    name: str
+    text: str
+
+
 def write_derived(results, table):
-    """RESULTS/NAME with a column `records`: the hash of the records that the rows were made from. The folder's tables are of all scenes
-    and methods: of a part of the records none is written."""
+    """RESULTS/NAME: of a table with a column `records`, the hash of the records that the rows were made from. The folder's tables are
+    of all scenes and methods: of a part of the records none is written."""
     if getattr(results, "is_part", False):
         return f"{table.name} is of all scenes and methods, so it is not written"
+    if isinstance(table, Words):
+        return files.replace_file(results.folder / table.name, table.text)
     return write_table(results.folder / table.name, [*table.columns, RECORDS], [{**row, RECORDS: results.hash} for row in table.rows])
 
 

@@ -12,8 +12,8 @@ from matplotlib import pyplot
 
 from photonlab import figures
 from photonlab.drawing import style, text
-from photonlab.figures import convergence
-from support import ANALYSIS, synthetic
+from photonlab.figures import convergence, scaling
+from support import ANALYSIS, synthetic, whole_results
 from support.images import layered, write_exr, write_runs
 from support.in_folder import InFolder, run
 
@@ -203,6 +203,19 @@ class Notebook(InFolder):
         self.assertTrue(frame[frame["method"] == "PM, radius"]["alpha"].isna().all())
         self.assertEqual(list(frame["method"].cat.categories), ["PM, radius", "PPM"])
         self.assertEqual(frame.attrs["units"]["seconds"], "s")
+
+    def test_no_figure_writes_into_the_folder(self):
+        whole_results.make(self.results)
+        for command in ["decomposition", "fits"]:
+            self.output_of(command)
+        before = sorted(self.results.rglob("*"))
+        kinds = [name for name in whole_results.COMMANDS if name in {module.COMMAND.name for module in figures.MODULES}]
+        self.assertGreater(len(kinds), 12)
+        for kind in kinds:
+            results = scaling.Measured(self.results) if kind == "scaling" else self.read()
+            self.assertTrue(figures.of(kind, results), kind)
+            pyplot.close("all")
+        self.assertEqual(sorted(self.results.rglob("*")), before)
 
     def test_what_a_figure_cannot_be_asked_for_is_refused(self):
         synthetic.write_csv(self.results, synthetic.rows(lambda *_: 1.0))
