@@ -13,18 +13,15 @@ import matplotlib
 from photonlab import analysed, answering, measuring, tabling
 from photonlab.command import options_of
 from photonlab.drawing import saving
-from photonlab.figures import (best_alpha, bias_variance, calibration, convergence, equal_error, equal_time, extremes, gallery, grid,
-                               memory, methods, probes, radii, scaling, spectrum, strip, time_to_error, tradeoff)
+from photonlab.figures import MODULES
 from photonlab.records import tables
 from photonlab.records.files import InputError, reason
 from photonlab.report import page
 from photonlab.statistics import decomposition, fits
 
 # In this order all are made of a folder: a command reads what those before it wrote.
-COMMANDS = [convergence.COMMAND, strip.COMMAND, gallery.COMMAND, decomposition.COMMAND, fits.COMMAND, bias_variance.COMMAND,
-            spectrum.COMMAND, memory.COMMAND, best_alpha.COMMAND, methods.COMMAND, radii.COMMAND, calibration.COMMAND, grid.COMMAND,
-            equal_time.COMMAND, equal_error.COMMAND, time_to_error.COMMAND, tradeoff.COMMAND, probes.COMMAND, scaling.COMMAND,
-            extremes.COMMAND, measuring.COMMAND, tabling.COMMAND, answering.COMMAND, page.COMMAND]
+COMMANDS = [decomposition.COMMAND, fits.COMMAND, *(module.COMMAND for module in MODULES), measuring.COMMAND, tabling.COMMAND,
+            answering.COMMAND, page.COMMAND]
 ALL = "analyse"          # the command that makes them
 FIGURE = "figure"        # may stand before the name of one: `photonlab figure convergence RESULTS`
 
