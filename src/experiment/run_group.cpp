@@ -104,25 +104,25 @@ OpenRun open_run(const RunGroup& group, const PreparedRun& prepared) {
     std::vector<Snapshot> snapshots;
     for (const std::uint64_t pass : prepared.run->plan.snapshots)
         snapshots.push_back({pass, prepared.files.snapshot(pass).lexically_relative(prepared.folder).generic_string()});
-    return {
-        &prepared,
-        RunRecord{group.experiment.title,
-                  prepared.run->method,
-                  prepared.key,
-                  entry.file,
-                  std::chrono::system_clock::now(),
-                  0.0,
-                  group.runs.size(),
-                  prepared.run->plan.recorded,
-                  std::move(snapshots),
-                  std::nullopt,
-                  {}},
-        Recorder({group.experiment.name, prepared.run->name, entry.name, prepared.settings, group.scene.camera.width,
-                  group.scene.camera.height, entry.samples_per_pixel, group.hit_points.points.size()},
-                 group.reference, prepared.files.rows),
-        {},
-        {},
-        {}};
+    RunIdentity identity{group.experiment.name,     prepared.run->name,      entry.name,
+                         prepared.run->method,      prepared.settings,       group.scene.camera.width,
+                         group.scene.camera.height, entry.samples_per_pixel, group.hit_points.points.size()};
+    return {&prepared,
+            RunRecord{group.experiment.title,
+                      prepared.run->method,
+                      prepared.key,
+                      entry.file,
+                      std::chrono::system_clock::now(),
+                      0.0,
+                      group.runs.size(),
+                      prepared.run->plan.recorded,
+                      std::move(snapshots),
+                      std::nullopt,
+                      {}},
+            Recorder(std::move(identity), group.reference, prepared.files.rows),
+            {},
+            {},
+            {}};
 }
 
 /// Adds the run's images to the sums over seeds; false when it was interrupted while it waited for another process that

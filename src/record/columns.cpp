@@ -131,6 +131,9 @@ std::vector<Column> columns_before_settings() {
          [](const Record& r) { return r.identity.run; }},
         {"scene", Kind::Identity, Type::Text, "", "scene", "name of the scene",
          [](const Record& r) { return r.identity.scene; }},
+        {"method", Kind::Identity, Type::Text, "", "method",
+         "what the experiment calls it: its `name`, or the integrator",
+         [](const Record& r) { return r.identity.method; }},
     };
 }
 

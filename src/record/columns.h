@@ -34,6 +34,7 @@ struct RunIdentity {
     std::string experiment;
     std::string run;
     std::string scene;
+    std::string method;  ///< as the experiment calls it: by its name, or by the integrator
     RunSettings settings;
     int width = 0;
     int height = 0;

@@ -49,6 +49,7 @@ TEST_F(ExperimentRuns, RecordsEveryRunPassAndComponent) {
         EXPECT_EQ(row.at("schema"), "1");
         EXPECT_EQ(row.at("experiment"), "tiny");
         EXPECT_EQ(row.at("scene"), "walls");
+        EXPECT_TRUE(row.at("run").starts_with("walls_" + row.at("method"))) << row.at("method");
         EXPECT_EQ(row.at("max_depth"), "5");
         EXPECT_EQ(row.at("width"), "12");
         EXPECT_EQ(row.at("nonfinite"), "0");

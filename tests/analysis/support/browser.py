@@ -139,9 +139,9 @@ class Browser:
                     found.append(address)
         return found
 
-    def press(self, key):
-        code, number = KEYS.get(key) or (f"Key{key.upper()}", ord(key.upper()))
-        key_settings = {"key": key, "code": code, "windowsVirtualKeyCode": number}
+    def press(self, key, shift=False):
+        code, number = KEYS.get(key) or (f"{'Digit' if key.isdigit() else 'Key'}{key.upper()}", ord(key.upper()))
+        key_settings = {"key": key, "code": code, "windowsVirtualKeyCode": number, "modifiers": 8 if shift else 0}
         text = {"text": key} if len(key) == 1 else {}
         self.call("Input.dispatchKeyEvent", type="keyDown", **key_settings, **text)
         self.call("Input.dispatchKeyEvent", type="keyUp", **key_settings)
@@ -160,6 +160,11 @@ class Browser:
 
     def move_over(self, selector, across=0.5, down=0.5):
         self.move(*self.place(selector, across, down))
+
+    def turn_wheel(self, selector, steps, across=0.5, down=0.5):
+        """Towards the reader by that many notches."""
+        x, y = self.place(selector, across, down)
+        self.call("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=100 * steps)
 
     def click(self, selector):
         x, y = self.place(selector)

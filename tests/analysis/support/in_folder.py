@@ -7,8 +7,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from analysis import command_line
-from analysis.records import records
+from photonlab import command_line
+from photonlab.records import records
 
 
 def run(*arguments, main=command_line.main):

@@ -4,8 +4,8 @@ import csv
 import json
 from pathlib import Path
 
-from analysis.records import columns
-from analysis.records.records import COMPONENTS
+from photonlab.records import columns
+from photonlab.records.records import COMPONENTS
 
 COLUMNS = [column.name for column in columns.before_descriptions()]
 BASE = {"schema": "1", "experiment": "made-up", "scene": "cornell-box", "integrator": "ppm", "mode": "",

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import numpy
-from analysis.figures import probes, scaling
+from photonlab.figures import probes, scaling
 from support import ensembles as made
 from support import synthetic
 from support.images import grey, write_runs
@@ -16,7 +16,7 @@ UPDATE = "axis,value,update,radius,count,estimate\npasses,1,program,0,0,0\n"
 
 # What is called after what: a command reads what those before it wrote.
 COMMANDS = ["convergence", "strip", "gallery", "decomposition", "fits", "bias_variance", "memory", "best_alpha", "grid", "equal_time",
-            "time_to_error", "tradeoff", "probes", "scaling", "report"]
+            "equal_error", "spectrum", "metrics", "answer", "time_to_error", "tradeoff", "probes", "scaling", "report"]
 
 
 def make(results):

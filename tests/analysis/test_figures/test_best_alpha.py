@@ -2,9 +2,9 @@
 
 import unittest
 
-from analysis.figures import best_alpha
-from analysis.records import records, tables
-from analysis.statistics import best_alphas
+from photonlab.figures import best_alpha
+from photonlab.records import records, tables
+from photonlab.statistics import best_alphas
 from support import synthetic
 from support.in_folder import InFolder
 
@@ -17,7 +17,7 @@ def write_best(results, radii=("4", "16"), regions=("image", "edge"), passes=(1,
             for component in ["total", "gathered"] for radius in radii for region in regions for number in passes]
     synthetic.write_csv(results, synthetic.rows(lambda *_: 1e-4))
     found = records.read(results)
-    tables.write_derived(found, best_alphas.NAME, best_alphas.columns_of(found.columns), made)
+    tables.write_derived(found, tables.Derived(best_alphas.NAME, best_alphas.columns_of(found.columns), made))
     return found
 
 

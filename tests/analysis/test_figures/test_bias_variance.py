@@ -4,10 +4,10 @@ import unittest
 
 import numpy
 
-from analysis.figures import bias_variance
-from analysis.records import methods
-from analysis.statistics import decomposition, theory
-from analysis.statistics.moments import QUANTITIES
+from photonlab.figures import bias_variance
+from photonlab.records import methods
+from photonlab.statistics import decomposition, theory
+from photonlab.statistics.moments import QUANTITIES
 from support import ensembles as made
 from support.in_folder import InFolder
 

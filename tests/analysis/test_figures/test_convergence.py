@@ -6,9 +6,9 @@ import sys
 import unittest
 
 
-from analysis.drawing import style
-from analysis.figures import convergence
-from analysis.statistics import errors
+from photonlab.drawing import style
+from photonlab.figures import convergence
+from photonlab.statistics import errors
 from support import ANALYSIS, synthetic
 from support.in_folder import InFolder
 

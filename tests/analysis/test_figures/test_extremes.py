@@ -4,8 +4,8 @@ import unittest
 
 import numpy
 
-from analysis.figures import extremes
-from analysis.records import files
+from photonlab.figures import extremes
+from photonlab.records import files
 from support import synthetic
 from support.images import grey, write_runs
 from support.in_folder import InFolder

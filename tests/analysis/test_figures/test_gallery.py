@@ -2,7 +2,7 @@
 
 import unittest
 
-from analysis.figures import gallery
+from photonlab.figures import gallery
 from support import synthetic
 from support.images import layered, write_exr, write_runs
 from support.in_folder import InFolder

@@ -4,7 +4,7 @@ import unittest
 
 import numpy
 
-from analysis.figures import grid
+from photonlab.figures import grid
 from support import synthetic
 from support.images import layered, write_exr, write_runs
 from support.in_folder import InFolder

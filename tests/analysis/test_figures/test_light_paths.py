@@ -5,8 +5,8 @@ import unittest
 
 import numpy
 
-from analysis.figures import emission, light_paths
-from analysis.records import columns, kept_files, runs
+from photonlab.figures import emission, light_paths
+from photonlab.records import columns, kept_files, runs
 from support import stamps, synthetic
 from support.in_folder import InFolder
 

@@ -2,7 +2,7 @@
 
 import unittest
 
-from analysis.figures import memory
+from photonlab.figures import memory
 from support import synthetic
 from support.in_folder import InFolder
 

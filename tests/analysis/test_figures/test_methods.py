@@ -3,7 +3,7 @@
 import unittest
 
 import numpy
-from analysis.figures import calibration, methods, radii
+from photonlab.figures import calibration, methods, radii
 from support import ensembles as made
 from support import synthetic
 from support.images import grey, write_runs

@@ -2,7 +2,7 @@
 
 import unittest
 
-from analysis.figures import probes
+from photonlab.figures import probes
 from support import synthetic
 from support.in_folder import InFolder
 

@@ -2,8 +2,8 @@
 
 import unittest
 
-from analysis.figures import scaling
-from analysis.records import files
+from photonlab.figures import scaling
+from photonlab.records import files
 from support import synthetic
 from support.in_folder import InFolder
 

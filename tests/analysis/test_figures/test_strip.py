@@ -4,9 +4,9 @@ import unittest
 
 import numpy
 
-from analysis.drawing import pictures
-from analysis.figures import strip
-from analysis.records import files, images, methods, records
+from photonlab.drawing import pictures
+from photonlab.figures import strip
+from photonlab.records import files, images, methods, records
 from support import synthetic
 from support.images import grey, layered, write_exr, write_runs
 from support.in_folder import InFolder

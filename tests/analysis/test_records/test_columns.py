@@ -8,9 +8,9 @@ import unittest
 import numpy
 from matplotlib import pyplot
 
-from analysis.drawing import style
-from analysis.figures import convergence, grid
-from analysis.records.columns import BEFORE_DESCRIPTIONS
+from photonlab.drawing import style
+from photonlab.figures import convergence, grid
+from photonlab.records.columns import BEFORE_DESCRIPTIONS
 from support import ensembles as made
 from support import stamps, synthetic
 from support.in_folder import InFolder
@@ -63,7 +63,7 @@ class Unheard(Described):
 
     def test_the_metric_is_drawn_against_passes_under_its_label(self):
         found = self.write_beams()
-        figure = convergence.draw(found, next(metric for metric in found.columns.metrics if metric.name == "median_error"))
+        figure = convergence.draw(found, "median_error")
         self.addCleanup(pyplot.close, figure)
         axes = figure.axes[0]
         self.assertEqual(axes.get_ylabel(), "median error (radiance)")

@@ -9,15 +9,15 @@ import sys
 import unittest
 from unittest import mock
 
-from analysis import command_line
-from analysis.records import files
-from support import ROOT, in_folder
+from photonlab import command_line
+from photonlab.records import files
+from support import ANALYSIS, in_folder
 
 # What a process of its own begins with; end() does some work as a command does.
 IN_A_PROCESS = f"""import sys
-sys.path.insert(0, {str(ROOT)!r})
-from analysis import command_line
-from analysis.records import files
+sys.path.insert(0, {str(ANALYSIS)!r})
+from photonlab import command_line
+from photonlab.records import files
 end = lambda work: command_line.run(lambda: command_line.answered(work))
 """
 

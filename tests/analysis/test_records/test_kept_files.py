@@ -9,7 +9,7 @@ import time
 import unittest
 from pathlib import Path
 
-from analysis.records import ensembles, files, images, kept_files
+from photonlab.records import ensembles, files, images, kept_files
 from support import stamps, whole_results
 from support.in_folder import InFolder
 

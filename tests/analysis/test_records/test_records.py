@@ -3,8 +3,8 @@
 import math
 import unittest
 
-from analysis.records import files, methods, references
-from analysis.statistics import errors
+from photonlab.records import files, methods, references
+from photonlab.statistics import errors
 from support import synthetic
 from support.in_folder import InFolder
 
@@ -173,6 +173,34 @@ class Methods(Folder):
 
     def test_integrators_that_are_not_known_here_are_named_as_they_are(self):
         self.assertEqual(self.labels({}, {"integrator": "sppm"}), ["PPM", "sppm"])
+
+    def named(self, *methods, recorded=False):
+        """Labels of methods that are (point, settings), as runs are called, or with the column `method` (name, settings)."""
+        made = []
+        for place, (name, settings) in enumerate(methods):
+            point, column = (f"{name}_{place}", {"method": name}) if recorded else (name, {})
+            for row in synthetic.rows(constant(1.0), seeds=[1, 2], passes=[1], **settings):
+                made.append({**row, "run": f"{row['scene']}_{point}_seed-{row['seed']}", **column})
+        return self.found(made, columns=[*synthetic.COLUMNS, "method"] if recorded else None).labels
+
+    def test_a_method_is_called_as_the_experiment_calls_it(self):
+        methods_of_two_kinds = [("plain photon mapping", synthetic.PM_RADIUS), ("slow_alpha-0.9", {"alpha": "0.9"}), ("ppm", {})]
+        self.assertEqual(self.named(*methods_of_two_kinds, recorded=True), ["plain photon mapping", "PPM", "slow_alpha-0.9"])
+        self.assertEqual(self.named(*methods_of_two_kinds), ["plain photon mapping", "PPM", "slow"])
+
+    def test_what_is_swept_under_a_name_is_named_behind_it_and_nothing_else(self):
+        self.assertEqual(self.named(("mine_alpha-0.5", {"alpha": "0.5"}), ("mine_alpha-0.9", {"alpha": "0.9"}),
+                                    ("other", {"kernel": "cone", "footprints": "1"})), ["mine, α = 0.5", "other", "mine, α = 0.9"])
+
+    def test_methods_of_the_same_settings_under_two_names_are_two_methods(self):
+        self.assertEqual(self.named(("short", {}), ("long", {}), recorded=True), ["long", "short"])
+
+    def test_no_two_methods_of_a_scene_have_one_label(self):
+        close = ["0.66666666", "0.66666667"]
+        for labels in [self.labels(*({"alpha": alpha} for alpha in close)),
+                       self.named(*(("mine", {"alpha": alpha}) for alpha in close), recorded=True),
+                       self.named(("PPM", {"kernel": "cone"}), ("ppm", {}), recorded=True)]:
+            self.assertEqual(len(set(labels)), 2, labels)
 
 
 class Aggregation(Folder):

@@ -3,7 +3,7 @@
 import csv
 import unittest
 
-from analysis.records import files, tables
+from photonlab.records import files, tables
 from support.in_folder import InFolder
 
 TEXTS = ["=1+1", "+1+1", "-1+1", "@SUM(A1)", "\t=1", "\r=1", "'=1", "''=1", "'", "'quoted'", "-", "=", "--", "+-1", "-1", "+2.5e-3", "-nan",

@@ -3,8 +3,8 @@
 import numpy
 from matplotlib import pyplot
 
-from analysis.drawing.saving import RECORDS
-from analysis.records import records
+from photonlab.drawing.saving import RECORDS
+from photonlab.records import records
 from support import synthetic
 from support.images import layered, write_exr, write_runs
 

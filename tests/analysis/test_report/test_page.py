@@ -4,16 +4,17 @@ import base64
 import html
 import html.parser
 import json
+import re
 import unittest
 import zlib
 
 import numpy
 from matplotlib import pyplot
 
-from analysis.drawing import pictures
-from analysis.records.columns import before_descriptions
-from analysis.report import page
-from analysis.report.viewer import encoded
+from photonlab.drawing import pictures
+from photonlab.records.columns import before_descriptions
+from photonlab.report import page
+from photonlab.report.viewer import encoded
 from support import synthetic
 from support.images import grey, write_exr
 from support.in_folder import InFolder, run
@@ -133,11 +134,12 @@ class Page(InFolder):
 
     def test_settings_in_tables_of_other_tools_are_named_by_the_method(self):
         make_results(self.results)
-        columns = ["scene", "point", *before_descriptions().settings, "slope"]
-        lines = [",".join({**synthetic.BASE, **settings, "point": "p", "slope": slope}[column] for column in columns)
-                 for settings, slope in [(synthetic.PM_RADIUS, "-0.25"), ({"alpha": "0.7"}, "-0.5")]]
+        columns = ["scene", "point", "method", *before_descriptions().settings, "slope"]
+        lines = [",".join({**synthetic.BASE, **settings, "point": "p", "method": method, "slope": slope}[column].replace(",", "")
+                          for column in columns)
+                 for method, settings, slope in [("PM radius", synthetic.PM_RADIUS, "-0.25"), ("PPM", {"alpha": "0.7"}, "-0.5")]]
         write_derived(self.results, "fits.csv", "\n".join([",".join(columns), *lines]))
-        self.assertEqual(self.row_of(self.written_page(), "Fits (fits.csv)", "PM, radius"), ["PM, radius", "−0.25"])
+        self.assertEqual(self.row_of(self.written_page(), "Fits (fits.csv)", "PM radius"), ["PM radius", "−0.25"])
 
     def test_what_is_missing_is_said(self):
         make_results(self.results, reference="somewhere/else")
@@ -213,6 +215,43 @@ class Page(InFolder):
         text = self.written_page()
         self.assertIn("No run.json", text)
         self.assertIn("<h1>made-up</h1>", text)
+
+    def test_the_conclusion_comes_first_and_then_the_figures_that_show_it(self):
+        make_results(self.results)
+        for name in ["other", "equal-time-cornell-box", "convergence-cornell-box", "strip-cornell-box"]:
+            write_figure(self.results, f"{name}.png")
+        text = html.unescape(self.written_page())
+        places = [text.index(part) for part in [
+            "cornell-box: PPM has the least RMSE after", "Which method is best: cornell-box", "<figcaption>equal-time-cornell-box.png",
+            "<figcaption>convergence-cornell-box.png", 'id="viewer"', "cornell-box: errors of the last pass",
+            "<figcaption>other.png", "<h2>How it was made"]]
+        self.assertEqual(places, sorted(places))
+        self.assertEqual(text.count("<figcaption>equal-time-cornell-box.png"), 1)
+        self.assertGreater(text.index("<figcaption>strip-cornell-box.png"), places[5])    # one row of pictures is enough
+
+    def test_the_best_of_each_light_is_marked(self):
+        make_results(self.results)
+        text = self.written_page()
+        marked = re.findall(r'aria-label="([^"]*), the best"', text)
+        self.assertEqual(marked, ["0.0158"] * 3)    # of the whole image, direct and gathered light; relMSE is the same for both
+
+    def test_warnings_are_about_something(self):
+        make_results(self.results)
+        self.assertNotIn('id="warnings"', self.written_page())
+        make_results(self.results, change=lambda row: row.update(
+            nonfinite="3" if row["mode"] else "0", reference_floor="1",
+            seconds=str(float(row["seconds"]) * (3 if row["seed"] == "2" and row["mode"] else 1))))
+        for place, file in enumerate(sorted(self.results.glob("runs/*/run.json"))):
+            record = json.loads(file.read_text())
+            record["reference"]["check"] = {"verdict": "disputed", "why": "photons find <more>."}
+            file.write_text(json.dumps({**record, "program": {"commit": f"c{place}"}, "counters": {"paths_cut": 2}}))
+        text = html.unescape(self.written_page())
+        for expected in ["its reference reference/box is disputed: photons find <more>.", "PM, radius has up to 3 pixels",
+                         "the reference's own noise, RMSE 1.0, is more than the error of PPM, 0.016",
+                         "the seconds of PM, radius differ from seed to seed by 71%", "of 4 versions of the program",
+                         "8 light paths were cut"]:
+            self.assertIn(expected, text)
+        self.assertNotIn("the seconds of PPM", text)
 
     def test_a_table_that_is_none_is_refused(self):
         make_results(self.results)

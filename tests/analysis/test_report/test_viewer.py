@@ -10,12 +10,21 @@ from pathlib import Path
 import numpy
 from matplotlib import pyplot
 
-from analysis.drawing import pictures, style
-from analysis.records import images
+from photonlab.drawing import pictures, style
+from photonlab.records import images
 from support import browser, synthetic
 from support.images import layered, write_exr
 from support.in_folder import run
 from test_report.made_up import NASTY, colour_of, make_results, write_figure
+
+
+def contrast(*colours):
+    """The ratio of two colours, "rgb(1, 2, 3)", as WCAG 2 defines it."""
+    def luminance(colour):
+        shown = numpy.array([float(part) for part in colour[4:-1].split(",")]) / 255
+        return numpy.where(shown <= 0.04045, shown / 12.92, ((shown + 0.055) / 1.055) ** 2.4) @ [0.2126, 0.7152, 0.0722]
+    dark, light = sorted(map(luminance, colours))
+    return (light + 0.05) / (dark + 0.05)
 
 
 @unittest.skipUnless(browser.EXECUTABLE, "no chromium on the PATH (Debian: chromium), so the viewer is not tested")
@@ -246,6 +255,77 @@ class Viewer(unittest.TestCase):
         self.chromium.click(heading)
         self.assertEqual(methods(), ["PM, radius", "PPM"])
 
+    def test_number_keys_choose_images_in_the_order_of_the_list(self):
+        self.chromium.move_over("#picture")
+        self.chromium.press("2")
+        self.wait_for_legend("A: PM, radius, pass 64, seed 1 (RMSE 0.028, 16 s)")
+        self.assert_shows(self.images["cornell-box", "PM, radius", 64])
+        self.chromium.press("3", shift=True)
+        self.wait_for_legend("B: PPM, pass 1, seed 1 (RMSE 0.014, 0.26 s)")
+        self.assert_shows(self.images["cornell-box", "PPM", 1])
+        self.chromium.press("9")    # there are five
+        self.assert_shows(self.images["cornell-box", "PPM", 1])
+
+    def test_keys_go_to_the_next_layer_and_seed(self):
+        self.chromium.move_over("#picture")
+        self.chromium.press("l")
+        self.assertEqual(self.selected("layer"), "emission")
+        self.chromium.press("s")
+        self.wait_for_legend("A: PPM, pass 64, seed 2, emission")
+        self.chromium.press("s")
+        self.wait_for_legend("A: PPM, pass 64, seed 1, emission")
+
+    def test_the_wheel_zooms_about_the_pixel_under_the_mouse(self):
+        def state():
+            return self.chromium.value("[Number(document.getElementById('zoom').value), "
+                                       "document.querySelector('#values caption').textContent]")
+        self.chromium.move_over("#picture", 0.4, 0.4)
+        before = state()
+        self.chromium.turn_wheel("#picture", -1, 0.4, 0.4)
+        self.chromium.wait_for(f"Number(document.getElementById('zoom').value) === {before[0] + 1}")
+        self.chromium.turn_wheel("#picture", 1, 0.4, 0.4)
+        self.chromium.wait_for(f"Number(document.getElementById('zoom').value) === {before[0]}")
+
+    def test_a_link_brings_back_a_view(self):
+        self.press("#scene", "End")
+        self.chromium.click("input[value=wipe]")
+        self.choose("a", "PM, radius, pass 1")
+        self.press("#seed-a", "ArrowDown")
+        self.choose("b", "PPM, pass 1")
+        self.press("#exposure", "ArrowRight")
+        self.choose_layer("gathered")
+        self.chromium.move_over("#picture", 16.5 / 64, 12.5 / 48)
+        shown = [self.pixels().tolist(), self.chromium.value("document.getElementById('legend').textContent")]
+        link = self.chromium.value("document.getElementById('link').getAttribute('href')")
+        self.chromium.open(self.results / "report.html")
+        self.wait_for_legend("A: PPM, pass 64, seed 1 (RMSE 0.014, 16 s)")
+        self.chromium.value(f"location.hash = {json.dumps(link)}")
+        self.wait_for_legend(shown[1])
+        self.assert_pixels(numpy.array(shown[0]), 0)
+        self.assertEqual(self.chromium.value("document.querySelector('#values caption').textContent"), "Radiance at pixel 16, 12")
+        self.chromium.value("location.hash = '#view?scene=none&a=none&zoom=x&mode=%22&pixel=a,b'")    # what it has not
+        self.chromium.wait_for("document.getElementById('legend').textContent.startsWith('A: PM, radius, pass 1, seed 2')")
+
+    def test_text_can_be_read_in_light_and_in_dark(self):
+        self.addCleanup(self.chromium.call, "Emulation.setEmulatedMedia", features=[])
+        for scheme in ["light", "dark"]:
+            self.chromium.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+            for selector in ["h1", "p.small", "a", "td", "caption span", "figcaption"]:
+                colours = self.chromium.value(f"""[getComputedStyle(document.querySelector("{selector}")).color,
+                                                   getComputedStyle(document.body).backgroundColor]""")
+                self.assertGreater(contrast(*colours), 4.5, (scheme, selector))    # WCAG 2, level AA
+
+    def test_everything_that_can_be_used_has_a_name(self):
+        nameless = self.chromium.value("""Array.from(document.querySelectorAll("select, input, button, a, img"))
+            .filter((one) => !(one.textContent.trim() || one.alt || one.ariaLabel || one.labels?.[0]?.textContent.trim()))
+            .map((one) => one.outerHTML)""")
+        self.assertEqual(nameless, [])
+
+    def test_nothing_is_wider_than_a_telephone(self):
+        self.addCleanup(self.chromium.call, "Emulation.clearDeviceMetricsOverride")
+        self.chromium.call("Emulation.setDeviceMetricsOverride", width=390, height=844, deviceScaleFactor=1, mobile=True)
+        self.assertLessEqual(self.chromium.value("document.documentElement.scrollWidth"), 390)
+
     def test_the_viewer_is_not_printed(self):
         self.addCleanup(self.chromium.call, "Emulation.setEmulatedMedia", media="")
         self.chromium.call("Emulation.setEmulatedMedia", media="print")
@@ -270,7 +350,7 @@ class Viewer(unittest.TestCase):
             synthetic.write_csv(folder, synthetic.rows(lambda *_: 0.01))
             self.assertEqual(run("report", folder)[0], 0)
             self.chromium.open(Path(folder) / "report.html")
-            self.assertEqual(self.chromium.value("document.querySelectorAll('.sortable').length"), 3)
+            self.assertEqual(self.chromium.value("document.querySelectorAll('.sortable').length"), 4)
 
 
 if __name__ == "__main__":

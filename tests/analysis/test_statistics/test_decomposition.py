@@ -7,9 +7,9 @@ import unittest
 
 import numpy
 
-from analysis.records import images
-from analysis.statistics.jackknife import jackknife_error
-from analysis.statistics.moments import Moments, decompose, replicates, standard_errors
+from photonlab.records import images
+from photonlab.statistics.jackknife import jackknife_error
+from photonlab.statistics.moments import Moments, decompose, replicates, standard_errors
 from support import ensembles as made
 from support import synthetic
 from support.in_folder import InFolder

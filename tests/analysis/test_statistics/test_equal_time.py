@@ -4,8 +4,8 @@ import unittest
 
 import numpy
 
-from analysis.figures import equal_time as figure
-from analysis.statistics import equal_time
+from photonlab.drawing import compared
+from photonlab.statistics import equal_time
 from support import ensembles as made
 from support import synthetic
 from support.images import grey, layered, write_exr, write_runs
@@ -67,15 +67,15 @@ class EqualTime(InFolder):
                 self.assertEqual(row["rmse"] != "", row["region"] == "edge", row)    # "smooth" has no error at all
                 self.assertTrue(row["note"] == "not resolved" or abs(float(row["rmse"]) - 0.1) < 1e-6)
         self.assertEqual({row["region"] for row in self.table("equal-time.csv")}, {"image", "smooth", "edge"})
-        self.assertEqual(figure.insets_of(self.read(), numpy.ones((made.HEIGHT, made.WIDTH, 3)), None),
-                         made.REGIONS)
+        reference = numpy.ones((made.HEIGHT, made.WIDTH, 3))
+        self.assertEqual(compared.insets_of(self.read(), reference, None, []), list(made.REGIONS.values()))
 
     def test_insets_have_no_light_in_them(self):
         reference = numpy.zeros((40, 40, 3))
         reference[4:8, 4:8] = 100.0    # the light, with the most contrast
         reference[30:, 30:] = 1.0
         is_light = reference[:, :, 0] > 10
-        y, x = figure.place_of_inset(reference, is_light, 8)
+        y, x = compared.place_of_inset(reference, is_light, 8)
         self.assertFalse(is_light[y:y + 8, x:x + 8].any())
         self.assertGreater(reference[y:y + 8, x:x + 8].std(), 0)
 
@@ -84,7 +84,7 @@ class EqualTime(InFolder):
         curve = equal_time.curve_of(self.read().of_method("PPM"), "total")
         self.assertEqual(equal_time.at_budget(curve, 0.1), "less than one pass")
         self.assertEqual(equal_time.at_budget(curve, 100), "more than recorded")
-        self.assertEqual(equal_time.at_budget(curve * [1, 1, -1, 1, 1], 3.0), "not resolved")
+        self.assertEqual(equal_time.at_budget(curve.assign(mean=-curve["mean"]), 3.0), "not resolved")
         self.assertAlmostEqual(equal_time.at_budget(curve, 3.0)[0], 11.96, delta=0.05)
 
 

@@ -6,8 +6,8 @@ import unittest
 
 import numpy
 
-from analysis.statistics import best_alphas, slopes, theory
-from analysis.statistics.moments import Moments, decompose
+from photonlab.statistics import best_alphas, slopes, theory
+from photonlab.statistics.moments import Moments, decompose
 from support import ensembles as made
 from support.in_folder import InFolder
 

@@ -4,7 +4,7 @@ import unittest
 
 import numpy
 
-from analysis.statistics import time_to_error
+from photonlab.statistics import time_to_error
 from support import synthetic
 from support.in_folder import InFolder, run
 

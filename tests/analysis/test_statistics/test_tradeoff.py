@@ -4,7 +4,7 @@ import unittest
 
 import numpy
 
-from analysis.statistics import tradeoff
+from photonlab.statistics import tradeoff
 from support import synthetic
 from support.in_folder import InFolder
 

@@ -1,0 +1,28 @@
+"""One file a figure: draw() takes records and returns it, and COMMAND makes a command of it. This is the list of them, in the order in
+which all are drawn."""
+
+from photonlab.command import options_of
+from photonlab.drawing.saving import Drawn
+from photonlab.figures import (best_alpha, bias_variance, calibration, convergence, emission, equal_error, equal_time, extremes, gallery,
+                               grid, light_paths, memory, methods, probes, radii, scaling, spectrum, strip, time_to_error, tradeoff)
+from photonlab.records.files import InputError
+
+MODULES = [convergence, strip, gallery, bias_variance, spectrum, memory, best_alpha, methods, radii, calibration, light_paths, emission, grid,
+           equal_time, equal_error, time_to_error, tradeoff, probes, scaling, extremes]
+
+
+def of(kind, results, *, width=None, style=None, scenes=None, methods=None, **options):
+    """{name: figure} of records, as `analysis KIND` makes them: `options` are those of its command line, with underscores. Nothing is
+    written. `width` is in millimetres; `style` is a matplotlib style file."""
+    commands = {module.COMMAND.name: module.COMMAND for module in MODULES}
+    if kind not in commands:
+        raise InputError(f"{kind}: expected one of {', '.join(commands)}")
+    chosen = options_of(commands[kind], [str(results.folder)])
+    unknown = set(options) - set(vars(chosen))
+    if unknown:
+        raise InputError(f"{kind} has no option {min(unknown)}; it has {', '.join(vars(chosen))}")
+    vars(chosen).update(options, look={"width": width, "style": style})
+    if scenes or methods:
+        results = results.only(scenes, methods)
+    made = commands[kind].make(results, chosen)
+    return {said.name: said.figure for said in made if isinstance(said, Drawn)}

@@ -1,0 +1,109 @@
+"""Which method for which light: MSE of every method and region relative to a baseline with the same photons, as a table, and MSE
+against the initial radius where one was swept.
+
+The baseline is ppm with schedule hachisuka, at the initial radius that most methods have. Values are those of decomposition.csv, of
+gathered light at the last pass; a ratio's standard error takes numerator and denominator as independent, which the shared photons
+make too large.
+"""
+
+import numpy
+from matplotlib import lines
+
+from photonlab.command import Command, has
+from photonlab.drawing import style
+from photonlab.drawing.panels import filled, name_row, panels_over_legend, set_titles
+from photonlab.drawing.saving import Drawn
+from photonlab.records import methods, tables
+from photonlab.statistics import decomposition
+
+NAME = "methods.csv"
+SWEPT = "footprints"
+NAMED = ["integrator", "schedule", "test_variant"]    # settings that tell rules apart
+COLUMNS = ["scene", "region", "method", "pass", "mse", "mse_error", "relative", "relative_error"]
+
+
+def last_rows(results):
+    """The rows of decomposition.csv at the last pass that all methods have, of gathered light, with the label of their method, its
+    rule, and its first radius."""
+    rows = decomposition.read_decomposition(results)
+    points_by_pass = rows.groupby("pass")["point"].nunique()
+    last = points_by_pass.index[points_by_pass == points_by_pass.max()].max()
+    rows = rows[(rows["component"] == "gathered") & (rows["pass"] == last)].copy()
+    points = results.rows["run"].map(methods.point_of)
+    rows["method"] = rows["point"].map(dict(zip(points, results.rows["method"])))
+    first = results.rows.drop_duplicates("method").set_index("method")
+    rows["swept"] = rows["method"].map(first[SWEPT]).fillna("")
+    rows["integrator"] = rows["method"].map(first["integrator"])
+    rows["rule"] = [rule_of(first.loc[method], results.columns) for method in rows["method"]]
+    return rows
+
+
+def rule_of(row, columns):
+    """A method's label without its radius."""
+    return ", ".join(columns.setting_text(name, row[name]) for name in NAMED if name in row and row[name])
+
+
+def relative_rows(rows):
+    """A row a method and region; empty where the baseline is not there."""
+    common = rows["swept"].value_counts().idxmax()
+    table = []
+    for (scene, region), own in rows.groupby(["scene", "region"], sort=False):
+        of_radius = own[(own["swept"] == common) | (own["swept"] == "")]
+        baseline = of_radius[(of_radius["integrator"] == "ppm") & of_radius["rule"].str.contains("hachisuka")]
+        if baseline.empty:
+            continue
+        base, base_error = baseline.iloc[0]["mse"], baseline.iloc[0]["mse_error"]
+        for _, row in of_radius.iterrows():
+            ratio = row["mse"] / base
+            error = abs(ratio) * numpy.hypot(row["mse_error"] / row["mse"], base_error / base)
+            table.append({"scene": scene, "region": region, "method": row["rule"], "pass": int(row["pass"]),
+                          "mse": repr(float(row["mse"])), "mse_error": repr(float(row["mse_error"])),
+                          "relative": repr(float(ratio)),
+                          "relative_error": repr(0.0 if row["point"] == baseline.iloc[0]["point"] else float(error))})
+    return table
+
+
+@style.drawn
+def draw_sweep(rows):
+    """MSE against the initial radius, a panel a scene and region, for rules of which more than one was tried; None without."""
+    swept = rows[rows["swept"] != ""]
+    counts = swept.groupby("rule")["swept"].nunique()
+    rules = list(counts[counts > 1].index)
+    if not rules:
+        return None
+    panels = list(dict.fromkeys(zip(rows["scene"], rows["region"])))
+    colors = {rule: f"C{place}" for place, rule in enumerate(rules)}
+    handles = [lines.Line2D([], [], label=rule, color=colors[rule], marker="o") for rule in rules]
+    columns = 3
+    figure, grid = panels_over_legend(-(-len(panels) // columns), columns, handles,
+                                      "Gathered light at the last pass, without the reference's noise; 1.96 standard errors.")
+    for axes, panel in filled(grid, panels):
+        own = swept[(swept["scene"] == panel[0]) & (swept["region"] == panel[1])]
+        for rule in rules:
+            of_rule = own[own["rule"] == rule].assign(place=lambda r: r["swept"].astype(float)).sort_values("place")
+            axes.errorbar(of_rule["place"], of_rule["mse"], yerr=1.96 * of_rule["mse_error"], color=colors[rule], marker="o")
+        axes.set_xscale("log", base=2)
+        axes.set_yscale("log")
+        set_titles(axes, ", ".join(panel))
+        axes.set_xlabel("initial radius (footprints)")
+    for panels_of_row in grid:
+        name_row(panels_of_row, "MSE (radiance²)")
+    return figure
+
+
+def make(results, options):
+    rows = last_rows(results)
+    table = relative_rows(rows)
+    if not table:
+        yield f"{results.folder}: no ppm with schedule hachisuka, which the others are compared with"
+        return
+    yield tables.Derived(NAME, COLUMNS, table)
+    figure = draw_sweep(rows, **options.look)
+    if figure is not None:
+        yield Drawn("initial-radius", figure)
+
+
+COMMAND = Command(
+    name="methods", draws=True, summary="MSE of every method and region relative to ppm, and against the initial radius", about=__doc__,
+    writes="methods.csv; where radii were swept figures/initial-radius, .png and .pdf",
+    make=make, is_for=lambda results: has(decomposition.NAME)(results) and results.rows["schedule"].nunique() > 1)

@@ -1,0 +1,86 @@
+"""How long methods take to a given error: seconds to a relMSE of 0.1, 0.01 and 0.001, by wall clock and by processor, for every
+scene, component and method.
+
+A seed's curve is followed from pass to pass, with straight lines on logarithmic axes, to where it first comes down to the
+threshold. A seed that is there at its first pass already took "at most" that pass: it is given the first pass's time, and the
+note says for how many. A method is given the mean over its seeds with its standard error, and none if a seed never got there:
+"more than the budget", with the time that was spent as `budget`.
+
+relMSE is taken against the mean of the reference's halves. The noise of that mean is in it and cannot be subtracted, as it can
+from MSE: no method comes below the mean of its variance / (r^2 + 0.01), which is at most `reference_floor` / 0.01 (that of a black
+picture). This is the column `floor_bound`. Where it is a tenth of a threshold or more, times may be too long by the noise, and
+the note says so.
+"""
+
+from matplotlib import lines
+
+from photonlab.command import Command, positive
+from photonlab.drawing import style
+from photonlab.drawing.panels import name_row, panels_over_legend, set_titles
+from photonlab.drawing.saving import Drawn
+from photonlab.records import tables
+from photonlab.statistics.time_to_error import CLOCKS, COLUMNS, NAME, table_of
+
+
+@style.drawn
+def draw(results, table):
+    """The figure of records and their times to thresholds: a row a scene and a column a clock, of the whole picture; None when
+    nothing was reached."""
+    labels = results.labels
+    whole = [row for row in table if row["component"] == "total"]
+    reached = [row for row in whole if "time" in row]
+    if not reached:
+        return None
+    scenes = list(dict.fromkeys(row["scene"] for row in whole))
+    styles = style.method_styles(results)
+    handles = [lines.Line2D([], [], label=label, **styles[label]) for label in labels]
+    figure, grid = panels_over_legend(
+        len(scenes), len(CLOCKS), handles, "Whole picture. Means over seeds with standard errors; arrows: more than the budget, "
+        "which is where they start. relMSE holds the reference's noise.")
+    thresholds = [row["threshold"] for row in whole]
+    for scene, panels in zip(scenes, grid):
+        of_scene = [row for row in whole if row["scene"] == scene]
+        times = [row.get("time", row["budget"]) for row in of_scene]
+        for clock, axes in zip(CLOCKS, panels):
+            for place, label in enumerate(labels):
+                own = [row for row in of_scene if (row["method"], row["clock"]) == (label, clock)]
+                shift = 1.03 ** (place - (len(labels) - 1) / 2)    # so that arrows do not hide each other
+                there = [row for row in own if "time" in row]
+                axes.errorbar([row["threshold"] * shift for row in there], [row["time"] for row in there],
+                              yerr=[row["time_error"] or 0.0 for row in there], **styles[label])
+                for row in own:
+                    if "time" not in row:
+                        axes.annotate("", (row["threshold"] * shift, row["budget"] * 1.5),
+                                      (row["threshold"] * shift, row["budget"]),
+                                      arrowprops={"arrowstyle": "->", "color": styles[label]["color"]})
+            style.logarithmic(axes.yaxis, min(times) / 1.5, max(times) * 2)
+            style.logarithmic(axes.xaxis, min(thresholds) / 2, max(thresholds) * 2)
+            axes.invert_xaxis()
+            set_titles(axes, scene if axes is panels[0] else "", CLOCKS[clock])
+            axes.set_xlabel("relMSE to be reached")
+        name_row(panels, "time (s)")
+    return figure
+
+
+def make(results, options):
+    table = table_of(results, sorted(set(options.thresholds), reverse=True))
+    if not table:
+        yield f"{results.folder}: no relmse was recorded (was there a reference?), so no times"
+        return
+    yield tables.Derived(NAME, COLUMNS, table)
+    figure = draw(results, table, **options.look)
+    if figure is None:
+        yield f"{results.folder}: no method reached a threshold, so there is nothing to draw"
+    else:
+        yield Drawn("time-to-error", figure)
+
+
+def add_options(parser):
+    parser.add_argument("--thresholds", type=positive, nargs="+", default=[1e-1, 1e-2, 1e-3], metavar="RELMSE",
+                        help="errors to be reached (default: 0.1 0.01 0.001)")
+
+
+COMMAND = Command(
+    name="time_to_error", draws=True, summary="seconds to a given relMSE, by wall clock and by processor", about=__doc__,
+    writes="time-to-error.csv and figures/time-to-error, .png and .pdf",
+    make=make, add_options=add_options)
