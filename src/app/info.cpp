@@ -11,7 +11,7 @@
 #include "app/commands.h"
 #include "app/limits.h"
 #include "app/options.h"
-#include "core/parallel.h"
+#include "core/machine/processors.h"
 #include "core/text/messages.h"
 #include "experiment/experiment_file.h"
 #include "integrators/density_estimate.h"
@@ -133,7 +133,7 @@ void print_narrow_gaps(const Scene& scene) {
 void info(const InfoOptions& options) {
     std::optional<Resolution> resolution;
     if (!options.resolution.empty()) resolution = parse_resolution(options.resolution);
-    const int threads = start_threads_up_to(hardware_threads());
+    const int threads = start_threads_up_to(usable_processors());
     const Scene scene = build_scene(load_scene_file(options.scene, options.parameters.values()), resolution);
     const Camera& camera = scene.camera;
     const VectorD position = VectorD(camera.position) * scene.unit_length + scene.centre;

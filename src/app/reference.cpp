@@ -10,7 +10,7 @@
 #include "app/limits.h"
 #include "app/options.h"
 #include "core/files/files.h"
-#include "core/parallel.h"
+#include "core/machine/processors.h"
 #include "core/text/messages.h"
 #include "core/text/progress.h"
 #include "experiment/experiment_file.h"
@@ -77,7 +77,7 @@ void make_reference(ReferenceOptions options) {
 void add_reference_command(CLI::App& app) {
     auto options = std::make_shared<ReferenceOptions>();
     ReferenceSettings& settings = options->settings;
-    settings.threads = hardware_threads();
+    settings.threads = usable_processors();
     CLI::App* command = app.add_subcommand("reference", "Add samples to a reference of two halves");
     command->add_option("SCENE", settings.scene_file, "scene file (Mitsuba XML)")->required();
     command->add_option("-o", options->output, "folder of the reference")->required()->check(require_folder_name);
@@ -109,7 +109,10 @@ void add_reference_command(CLI::App& app) {
                         "edges from camera to light, -1 is unlimited [the scene file's]");
     command->add_option("--seed", settings.seed, fmt::format("of all random numbers [{}]", settings.seed))
         ->check(require_whole_number);
-    command->add_option("--threads", settings.threads, "threads to use [all]; the image does not depend on it")
+    command
+        ->add_option("--threads", settings.threads,
+                     "threads to use [what the job may use: SLURM_CPUS_PER_TASK, else the affinity mask]; the image "
+                     "does not depend on it")
         ->check(CLI::Range(1, 1024));
     command->add_flag("--picture-only", settings.picture_only,
                       "store the picture without its layers, a third of the size; nothing can be added to it");

@@ -15,7 +15,7 @@
 #include "app/options.h"
 #include "core/files/file_lock.h"
 #include "core/files/files.h"
-#include "core/parallel.h"
+#include "core/machine/processors.h"
 #include "core/text/messages.h"
 #include "core/text/progress.h"
 #include "core/text/text.h"
@@ -42,7 +42,7 @@ struct RenderOptions {
     MethodOptions method;
     std::uint64_t passes = 32;
     std::uint64_t seed = 1;
-    int threads = hardware_threads();
+    int threads = usable_processors();
     std::string resolution;
     SceneParameters parameters;
     int samples_per_pixel = 1;
@@ -358,7 +358,10 @@ void add_render_command(CLI::App& app) {
         ->check(CLI::Range(1e-6, 1.0 - 1e-6));
     command->add_option("--seed", options->seed, fmt::format("of all random numbers [{}]", options->seed))
         ->check(require_whole_number);
-    command->add_option("--threads", options->threads, "threads to use [all]; the image does not depend on it")
+    command
+        ->add_option("--threads", options->threads,
+                     "threads to use [what the job may use: SLURM_CPUS_PER_TASK, else the affinity mask]; the image "
+                     "does not depend on it")
         ->check(CLI::Range(1, 1024));
     options->parameters.add_to(*command);
     command->add_option("--resolution", options->resolution, "WIDTHxHEIGHT in place of the scene file's");

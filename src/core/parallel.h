@@ -7,14 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
-#include <thread>
 
 namespace photonlab {
-
-/// Threads that the machine can run at once.
-inline int hardware_threads() {
-    return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-}
 
 /// Calls `body(i)` for i in [0, count), items handed out one at a time to `threads` threads (>= 1).
 /// The first exception of a body is thrown again here, after the loop.

@@ -10,7 +10,7 @@
 
 #include "core/error.h"
 #include "core/files/files.h"
-#include "core/parallel.h"
+#include "core/machine/processors.h"
 #include "core/text/nearest.h"
 #include "core/text/text.h"
 #include "experiment/toml.h"
@@ -238,7 +238,7 @@ private:
     }
 
     void read_sampling(const toml::table& root) {
-        experiment_.threads = hardware_threads();
+        experiment_.threads = usable_processors();
         if (const toml::node* node = root.get("threads"))
             experiment_.threads = static_cast<int>(integer(*node, "threads", 1, most_threads));
         if (const toml::node* node = root.get("samples_per_pixel")) samples_per_pixel_ = samples_per_pixel(*node);
