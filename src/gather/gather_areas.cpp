@@ -139,11 +139,18 @@ GatherArea GatherAreas::area_of(const SurfaceEnd& point, const SeenArea& measure
 }
 
 GatherArea GatherAreas::at(const SurfaceEnd& point, std::size_t index, double radius) {
-    if (is_of_disc(point) || is_whole(point, known_[index], radius)) return {};
+    if (is_of_disc(point)) return {};
+    // What is kept follows from this radius alone, so that memory is that of a run which was continued here.
+    if (is_whole(point, known_[index], radius)) {
+        around_[index].reset();
+        return {};
+    }
     if (!around_[index]) around_[index] = std::make_unique<Around>();
     Around& around = *around_[index];
-    if (around.is_flat(scene_, point, settings_.kernel, radius))
+    if (around.is_flat(scene_, point, settings_.kernel, radius)) {
+        around.measured.reset();
         return area_of(point, around.flat(radius), around.surroundings, radius);
+    }
 
     const int series = static_cast<int>(depth_of(radius) / measured_octaves);
     const double top = radius_at(measured_octaves * series);
