@@ -109,7 +109,7 @@ TEST_F(StoppedProgram, TwoOfItShareTheRunsOfOneFolder) {
         for (std::size_t at = 0; (at = messages.find("finished walls_", at)) != std::string::npos; ++at) ++count;
         return count;
     };
-    EXPECT_EQ(finished(first.messages()) + finished(second.messages()), 10u);
+    EXPECT_EQ(finished(first.messages()) + finished(second.messages()), 14u);
 }
 
 // The other process is killed, and what it was making is made by the one that waited.
