@@ -57,7 +57,7 @@ void expect_radiance(const ColorD& found, const ColorD& flux, double squared_rad
 }
 
 MethodSettings within(const std::string& integrator, double radius) {
-    return {.integrator = integrator, .radius = radius, .direct = DirectMode::Photons};
+    return {.integrator = integrator, .radius = radius, .area = AreaMode::Disc, .direct = DirectMode::Photons};
 }
 
 MethodSettings nearest(int k, double max_radius) {
@@ -65,6 +65,7 @@ MethodSettings nearest(int k, double max_radius) {
             .mode = GatherMode::Nearest,
             .k = k,
             .max_radius = max_radius,
+            .area = AreaMode::Disc,
             .direct = DirectMode::Photons};
 }
 

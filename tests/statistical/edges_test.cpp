@@ -70,7 +70,8 @@ TEST(ClosedCube, IsRightInEveryPixelByEveryMethodKernelAndArea) {
 
 TEST(ClosedCube, IsDarkInItsCornersByTheDiscsArea) {
     const Scene scene = cube_with_corners();
-    for (const MethodSettings& method : every_method()) {
+    for (MethodSettings method : every_method()) {
+        method.area = AreaMode::Disc;
         double darkest = 1.0;
         for (const auto& pixel : pixels_over_seeds(scene, in_cube(method)))
             darkest = std::min(darkest, SampleMean(pixel).mean);
@@ -89,6 +90,7 @@ TEST(AreasOfSmoothLight, AreTheDiscsToTheBit) {
             method.direct = DirectMode::Photons;
             method.kernel = Kernel::Epanechnikov;
             method.photons_per_pass = 1000;
+            method.area = AreaMode::Disc;
             const Image disc = render(scene, method, {.passes = 3}).image;
             for (const AreaMode area : {AreaMode::Seen, AreaMode::Linear}) {
                 method.area = area;
