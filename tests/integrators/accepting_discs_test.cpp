@@ -25,7 +25,7 @@ SceneDescription furnished_room() {
     return description;
 }
 
-std::vector<NamedMethod> methods() {
+std::vector<NamedMethod> discs_of_methods() {
     std::vector<NamedMethod> methods = methods_by_every_radius_rule({.radius = 0.2, .photons_per_pass = 2000});
     for (const std::string integrator : {"ppm", "sppm"})
         for (const AreaMode area : {AreaMode::Seen, AreaMode::Linear}) {
@@ -45,7 +45,7 @@ std::vector<NamedMethod> methods() {
 TEST(AcceptingDiscs, AcceptWhatTheGatherAccepts) {
     const Scene scene = build_scene(furnished_room());
     const HitPoints grid = trace_hit_points(scene, 1, 1);
-    for (const auto& [name, settings] : methods()) {
+    for (const auto& [name, settings] : discs_of_methods()) {
         const auto integrator =
             make_integrator(find_integrator_kind(settings.integrator), settings, {.scene = scene, .hit_points = grid});
         const bool looks_farther =
