@@ -35,7 +35,8 @@ std::string cell(const Record& record, const std::string& column) {
 TEST(Records, ColumnsAreThoseOfTheContract) {
     EXPECT_EQ(
         csv_header(),
-        "schema,experiment,run,scene,method,integrator,mode,schedule,photon_paths,step_rule,emission,learn_passes,alpha,kappa,"
+        "schema,experiment,run,scene,method,integrator,mode,schedule,photon_paths,step_rule,emission,learn_passes,"
+        "alpha,kappa,"
         "smallest_radius,largest_radius,"
         "laplacian_radius,test_variant,start,test_photons,test_shrink,test_growth,positions,branches,estimate_error,"
         "k,radius_rule,radius_initial,footprints,max_radius,"

@@ -209,7 +209,8 @@ MaterialKinds material_kinds(const std::variant<Bsdfs...>*, const std::variant<W
 }  // namespace
 
 Material read_material(const XmlElement& element, const SceneSource& source) {
-    const MaterialKinds kinds = material_kinds(static_cast<const Bsdf*>(nullptr), static_cast<const MaterialWrapper*>(nullptr));
+    const MaterialKinds kinds =
+        material_kinds(static_cast<const Bsdf*>(nullptr), static_cast<const MaterialWrapper*>(nullptr));
     const auto& kind = find_kind(kinds, element);
     MaterialReader reader(element, source);
     return kind.read(reader);
