@@ -62,6 +62,7 @@ MethodSettings method_of(const ReferenceSettings& settings) {
     method.schedule = ScheduleName::KnausZwicker;
     method.alpha = settings.alpha;
     method.footprints = reference_footprints;
+    method.area = AreaMode::Disc;  // its halves would share the lines by which areas are measured, with all they judge
     method.photons_per_pass = settings.photons_per_pass;
     method.max_depth = settings.max_depth;
     require_valid(method);

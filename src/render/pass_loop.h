@@ -40,7 +40,7 @@ struct RunState {
     std::optional<double> mutations_accepted;  ///< share, in the last pass; of visible paths
     std::optional<double> step_size;           ///< of these mutations
     std::uint64_t photons_stored = 0;
-    std::uint64_t paths_cut = 0;          ///< by the cap on edges
+    std::uint64_t paths_cut = 0;          ///< by the cap on edges, of all that were traced
     double power_cut = 0.0;               ///< what those carried, relative to the total power, summed over paths
     std::uint64_t nonfinite_photons = 0;  ///< refused by the photon pass
     std::uint64_t nonfinite_in_maps = 0;  ///< refused because they could not be indexed

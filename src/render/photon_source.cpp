@@ -10,7 +10,9 @@ VisiblePathSettings chains_of(const MethodSettings& method, const Needs& needs) 
     // Discs of a pass are within those of the pass before, and follow from nothing that chains did. Areas are measured
     // anew as radii shrink: a photon that was out of reach may come into it by a hair.
     const bool are_nested = is_blind(method.schedule) && !needs.new_points && method.area == AreaMode::Disc;
-    return {.step_rule = method.step_rule, .keeps_states = are_nested};
+    // Passes that begin at the last one's states are not independent, as an estimated error takes them to be.
+    const bool may_depend = method.estimate_error == ErrorEstimation::Off;
+    return {.step_rule = method.step_rule, .keeps_states = are_nested && may_depend};
 }
 
 }  // namespace
@@ -29,8 +31,14 @@ PhotonSource::PhotonSource(const Scene& scene, const PhotonSettings& settings, i
 
 PhotonPass PhotonSource::trace(std::uint64_t pass, const std::function<AcceptingDiscs()>& where_accepted) {
     if (!chains_) return trace_photons(scene_, settings_, pass, threads_, map_ ? &*map_ : nullptr);
+    // The camera's side of a path has an edge, and a photon one, or two where it has to have been reflected.
+    const bool may_store = settings_.max_depth < 0 || settings_.max_depth > (settings_.store_direct ? 1 : 2);
     const AcceptingDiscs discs = where_accepted();
-    if (discs.empty()) return {.paths_emitted = settings_.paths};
+    if (discs.empty() || !may_store) {
+        PhotonPass dark;
+        dark.paths_emitted = settings_.paths;
+        return dark;
+    }
     return chains_->trace(
         scene_, settings_, pass, [&](const Photon& photon) { return discs.accept(photon); }, threads_);
 }
@@ -50,7 +58,10 @@ void PhotonSource::freeze(const EmissionMap& learnt) {
 }
 
 void PhotonSource::exchange(StateArchive& archive) {
-    if (map_) map_->exchange(archive);
+    if (map_) {
+        map_->exchange(archive);
+        archive.exchange(learn_passes_);
+    }
     if (chains_) chains_->exchange(archive);
 }
 

@@ -209,11 +209,11 @@ TEST(TouchingDielectrics, ThatShareTheirInterfaceAreInvisible) {
     scene.materials.push_back(glass(1.5f));
     scene.materials.push_back(glass(1.33f));
     scene.materials.push_back(glass(1.33f, 1.5f));  // from glass (the side of the normal) to water
-    const auto level = [&](double y, bool up, std::size_t material) {
+    const auto level = [&](double y, bool faces_up, std::size_t material) {
         const VectorD corner(-2.5, y, -2.5);
         const VectorD x(5, 0, 0);
         const VectorD z(0, 0, 5);
-        scene.shapes.push_back(shape(up ? parallelogram(corner, z, x) : parallelogram(corner, x, z), material));
+        scene.shapes.push_back(shape(faces_up ? parallelogram(corner, z, x) : parallelogram(corner, x, z), material));
     };
     level(0.5, true, 1);
     level(0.0, true, 3);

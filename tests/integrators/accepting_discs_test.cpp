@@ -28,7 +28,7 @@ SceneDescription furnished_room() {
 std::vector<NamedMethod> discs_of_methods() {
     std::vector<NamedMethod> methods = methods_by_every_radius_rule({.radius = 0.2, .photons_per_pass = 2000});
     for (const std::string integrator : {"ppm", "sppm"})
-        for (const AreaMode area : {AreaMode::Seen, AreaMode::Linear}) {
+        for (const AreaMode area : {AreaMode::Disc, AreaMode::Seen, AreaMode::Linear}) {
             MethodSettings settings{.integrator = integrator,
                                     .radius = 0.2,
                                     .area = area,

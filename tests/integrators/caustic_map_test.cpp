@@ -24,12 +24,12 @@ Scene room_with_a_mirror() {
 
 constexpr double global_radius = 0.8;
 constexpr double caustic_radius = 0.3;
-constexpr int passes = 3;
+constexpr int traced_passes = 3;
 
 class CausticMap : public ::testing::Test {
 protected:
     CausticMap() {
-        for (std::uint64_t pass = 1; pass <= passes; ++pass)
+        for (std::uint64_t pass = 1; pass <= traced_passes; ++pass)
             for (const Photon& photon : trace_photons(scene_, {.paths = 4000}, pass, 1).photons)
                 (photon.caustic ? caustic_ : global_).push_back(photon);
     }
@@ -39,7 +39,7 @@ protected:
         method.integrator = "photonmapper";
         method.area = AreaMode::Disc;  // as the sums here divide
         method.photons_per_pass = 4000;
-        return *render(scene_, hit_points_, method, {.passes = passes}).image.find(gathered_layer);
+        return *render(scene_, hit_points_, method, {.passes = traced_passes}).image.find(gathered_layer);
     }
 
     /// What `sum(point)` brings, divided and weighted as the layer is. One hit point a pixel.
@@ -47,7 +47,7 @@ protected:
     void expect_layer(const std::vector<Color>& layer, Sum&& sum) const {
         double mean = 0.0;
         for (const HitPoint& point : hit_points_.points) {
-            const ColorD expected = sum(point) * (scene_.total_power / (4000.0 * passes));
+            const ColorD expected = sum(point) * (scene_.total_power / (4000.0 * traced_passes));
             EXPECT_NEAR(layer[point.pixel].x, expected.x, 1e-5 * expected.x);
             mean += expected.x;
         }

@@ -76,8 +76,9 @@ TEST(SettingsTable, RefusesWhatIsOutOfRangeWithWhatIsExpected) {
     EXPECT_EQ(refusal("photons_per_pass", std::int64_t{0}), "photons_per_pass: expected from 1 to 4294967296, got 0");
     for (const double number : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
         for (const SettingField& field : setting_fields())
-            if (field.type == Type::Number || field.type == Type::Length)
+            if (field.type == Type::Number || field.type == Type::Length) {
                 EXPECT_NE(refusal(field.name, number), "") << field.name;
+            }
 }
 
 TEST(SettingsTable, UnsetRadiusIsCalledAuto) {

@@ -43,6 +43,8 @@ private:
 template <bool are_new>
 IntegratorKind point_count() {
     return {.name = "point-count",
+            .label = "",
+            .paper = "",
             .needs =
                 [](const MethodSettings&) {
                     return Needs{.new_points = are_new ? std::optional(NewPoints{}) : std::nullopt};

@@ -58,7 +58,7 @@ TEST_F(LayeredFiles, MeanTheSameInBothSpellings) {
         const Bsdf& b = new_material.bsdf;
         ASSERT_EQ(a.index(), b.index());
         const Vector out = Vector(0.3f, -0.2f, 0.9f).normalized();
-        for (const Vector in : {Vector(-0.3f, 0.2f, 0.9f), Vector(0.1f, 0.5f, 0.4f), Vector(0.2f, 0.1f, -0.8f)}) {
+        for (const Vector& in : {Vector(-0.3f, 0.2f, 0.9f), Vector(0.1f, 0.5f, 0.4f), Vector(0.2f, 0.1f, -0.8f)}) {
             const Vector unit = in.normalized();
             EXPECT_EQ(evaluate(a, out, unit), evaluate(b, out, unit));
             EXPECT_EQ(density(a, out, unit), density(b, out, unit));

@@ -26,7 +26,7 @@ MethodSettings direct_photons(double radius, std::uint64_t photons) {
     return {.alpha = 1.0,
             .radius = radius,
             .kernel = Kernel::Cone,
-            .area = AreaMode::Disc,  // where states of chains may be kept
+            .area = AreaMode::Disc,
             .direct = DirectMode::Photons,
             .max_depth = 2,
             .photons_per_pass = photons};

@@ -59,6 +59,8 @@ inline std::vector<NamedMethod> methods_of_own_photons(const MethodSettings& bas
             settings.emission = EmissionMode::Plain;
             settings.photon_paths = PhotonPathMode::Visible;
             methods.push_back({name + ", visible paths", settings});
+            settings.area = AreaMode::Disc;
+            methods.push_back({name + ", visible paths, disc", settings});  // ppm's chains keep their states here
         }
     return methods;
 }

@@ -1,13 +1,12 @@
 #include "core/machine/processors.h"
 
-#include <sched.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <optional>
 #include <string_view>
-#include <thread>
 
 namespace photonlab {
 
@@ -24,19 +23,11 @@ std::optional<int> processors_of_job() {
     return count;
 }
 
-/// Empty where the kernel has more processors than a cpu_set_t has bits.
-std::optional<int> processors_of_mask() {
-    cpu_set_t mask;
-    if (sched_getaffinity(0, sizeof(mask), &mask) != 0) return std::nullopt;
-    return std::max(1, CPU_COUNT(&mask));
-}
-
 }  // namespace
 
 int usable_processors() {
     if (const auto of_job = processors_of_job()) return *of_job;
-    if (const auto of_mask = processors_of_mask()) return *of_mask;
-    return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    return std::max(1, omp_get_num_procs());
 }
 
 }  // namespace photonlab

@@ -42,7 +42,7 @@ std::string printable(std::string text) {
         text.begin(), text.end(), [](unsigned char c) { return (c < 0x20 && c != '\n') || c == 0x7f; }, ' ');
     // Control characters of two bytes, U+0080 to U+009F.
     for (std::size_t i = 0; i + 1 < text.size(); ++i)
-        if (text[i] == '\xc2' && static_cast<unsigned char>(text[i + 1]) < 0xa0) text.replace(i, 2, "  ");
+        if (text[i] == '\xc2' && static_cast<unsigned char>(text[i + 1]) < 0xa0) text[i] = text[i + 1] = ' ';
     return text;
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/machine/available_memory.h"
+#include "gather/gather_areas.h"
 #include "gather/photon_map.h"
 #include "integrators/registry.h"
 #include "render/estimates/coarse_view.h"
@@ -24,6 +25,8 @@ constexpr double bytes_of_statistics = 120.0;
 constexpr double bytes_of_area = 150.0;
 // Where a hit point accepts photons, for paths that are seen: twice while they are put into order, with boxes.
 constexpr double bytes_of_disc = 130.0;
+// Of each path of emission that learns: its cell, and how often its photons were accepted.
+constexpr double bytes_of_learnt_path = sizeof(std::uint32_t) + sizeof(std::uint64_t);
 // Of photons of a method's own: path or multiplicity, and how often it was accepted.
 constexpr double bytes_of_notes = 8.0;
 // Layers in float and double, their sum, an error's pixels, the file in memory, the reference's halves and their mean.
@@ -71,6 +74,8 @@ double MemoryEstimator::photon_bytes(const std::vector<RunSettings>& together) {
     const PhotonSize& size = photon_size(together[0]);
     double bytes = std::max(2.0 * size.photon_bytes, of_pass ? size.map_bytes : 0.0);
     if (needs_of(together[0].method).has_own_photons) bytes *= 1.0 + bytes_of_notes / sizeof(Photon);
+    if (emits_adaptively(together[0].method))
+        bytes += bytes_of_learnt_path * static_cast<double>(together[0].method.photons_per_pass);
     if (of_all) bytes += (2.0 * size.photon_bytes + size.map_bytes) * static_cast<double>(together[0].passes);
     return bytes;
 }
@@ -84,7 +89,8 @@ MemoryEstimate MemoryEstimator::of(const std::vector<RunSettings>& together, std
     double held = 2.0 * points.bytes_each + methods * bytes_of_statistics;
     for (const RunSettings& one : together)
         if (one.method.area != AreaMode::Disc) held += bytes_of_area;
-    if (traces_visible_paths(together[0].method)) held += bytes_of_disc;
+    if (traces_visible_paths(together[0].method))
+        held += bytes_of_disc + (together[0].method.area != AreaMode::Disc ? sizeof(GatherArea) : 0);
     MemoryEstimate estimate;
     estimate.program = resident_mebibytes();
     estimate.hit_points = margin * points.count * std::max(making, held) / mebibyte;

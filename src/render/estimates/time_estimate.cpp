@@ -13,11 +13,15 @@ constexpr std::uint64_t first_paths = 100;
 constexpr std::uint64_t most_paths = 10'000;
 constexpr std::uint64_t most_gathered = 4'000'000;  // a pass: some hundredths of a second
 constexpr std::uint64_t measured_passes = 3;
+constexpr double traces_of_visible = 3.0;  // a path: docs/light-paths
 
 /// Passes of `paths` photon paths: the state after each pass whose image was asked for, and after the last.
 std::vector<RunState> measure(const Scene& scene, const CoarseView& view, RunSettings settings, std::uint64_t paths,
                               std::uint64_t passes, std::vector<std::uint64_t> shown) {
     settings.method.photons_per_pass = paths;
+    // The few points of a coarse view see too little for chains to begin.
+    const bool is_visible = traces_visible_paths(settings.method);
+    settings.method.photon_paths = PhotonPathMode::Independent;
     settings.passes = passes;
     settings.shown = std::move(shown);
     std::vector<RunState> states;
@@ -25,6 +29,10 @@ std::vector<RunState> measure(const Scene& scene, const CoarseView& view, RunSet
         run_methods(scene, view.hit_points, {settings},
                     [&](std::size_t, const RunState& state, const Image&) { states.push_back(state); })[0];
     states.push_back(last);
+    if (is_visible)
+        for (RunState& state : states)
+            for (auto* seconds : {&state.times.seconds, &state.times.cpu_seconds})
+                (*seconds)[static_cast<std::size_t>(Stage::Trace)] *= traces_of_visible;
     return states;
 }
 

@@ -42,8 +42,7 @@ T luminance(const Imath::Color3<T>& color) {
 struct TextureRange {
     float least;
     float most;
-    float darkest;  ///< the least that the brightest channel is anywhere, or below it; above 0 the texture is nowhere
-                    ///< black
+    float darkest;  ///< above 0 where the texture is nowhere black
 };
 TextureRange range_of(const Texture& texture);
 
