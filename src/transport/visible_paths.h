@@ -11,9 +11,10 @@
 // Whether a step jumps depends on u' alone, so each kind of step leaves "uniform over V" as it is. A chain that begins
 // there, by rejection, and whose steps are of one size during a pass, has E[b sum phi] exactly right for any n. So step
 // sizes change between passes alone. A state may be kept for the next pass only if the discs of that pass are within
-// those of this one and do not depend on it: Knaus and Zwicker's radii at fixed hit points, and the disc's area. With radii that follow
-// counts the discs shrank because of the state, and a kept one is biased by 8% in an example of two discs. Nor may the
-// step size depend on a state that is kept: it is adapted in the first passes, each of which begins by rejection.
+// those of this one and do not depend on it: Knaus and Zwicker's radii at fixed hit points, and the disc's area. With
+// radii that follow counts the discs shrank because of the state, and a kept one is biased by 8% in an example of two
+// discs. Nor may the step size depend on a state that is kept: it is adapted in the first passes, each of which begins
+// by rejection.
 //
 // Hachisuka & Jensen 2011, "Robust Adaptive Photon Tracing Using Photon Path Visibility": states, exchange, mutation,
 // its adaptive size. Ours: the starts, sizes that change between passes, the rule "logarithmic", 64 chains, and
