@@ -33,8 +33,8 @@ PhotonPass PhotonSource::trace(std::uint64_t pass, const std::function<Accepting
     if (!chains_) return trace_photons(scene_, settings_, pass, threads_, map_ ? &*map_ : nullptr);
     // The camera's side of a path has an edge, and a photon one, or two where it has to have been reflected.
     const bool may_store = settings_.max_depth < 0 || settings_.max_depth > (settings_.store_direct ? 1 : 2);
-    const AcceptingDiscs discs = where_accepted();
-    if (discs.empty() || !may_store) {
+    const AcceptingDiscs discs = may_store ? where_accepted() : AcceptingDiscs();
+    if (discs.empty()) {
         PhotonPass dark;
         dark.paths_emitted = settings_.paths;
         return dark;

@@ -16,8 +16,22 @@ namespace photonlab {
 
 namespace {
 
+/// Answers as RandomStream does, from the next_double() of `Coordinates`.
+template <typename Coordinates>
+class AsRandomStream {
+public:
+    /// A multiple of 2^-24.
+    float next() {
+        return static_cast<float>(std::floor(static_cast<Coordinates&>(*this).next_double() * 0x1p24) * 0x1p-24);
+    }
+    Imath::V2f next_2d() {
+        const float x = next();
+        return {x, next()};
+    }
+};
+
 /// The numbers of a path as a vector in [0, 1)^n, as light_path.h draws them; beyond its end they are fresh.
-class PrimarySample {
+class PrimarySample : public AsRandomStream<PrimarySample> {
 public:
     PrimarySample(std::vector<double>& coordinates, RandomStream& random)
         : coordinates_(coordinates), random_(random) {}
@@ -25,12 +39,6 @@ public:
     double next_double() {
         if (used_ == coordinates_.size()) coordinates_.push_back(random_.next_double());
         return coordinates_[used_++];
-    }
-    /// A multiple of 2^-24, as RandomStream's.
-    float next() { return static_cast<float>(std::floor(next_double() * 0x1p24) * 0x1p-24); }
-    Imath::V2f next_2d() {
-        const float x = next();
-        return {x, next()};
     }
 
 private:
@@ -41,7 +49,7 @@ private:
 
 /// The numbers of a mutation of a path: each a small or large step from the path's own, u +- xi^(1/d + 1) modulo 1.
 /// Where the mutation is longer than its path was, the path's vector grows, as if it had always been as long.
-class MutatedSample {
+class MutatedSample : public AsRandomStream<MutatedSample> {
 public:
     MutatedSample(std::vector<double>& from, std::vector<double>& to, double step_size, RandomStream& random)
         : from_(from), to_(to), exponent_(1.0 / step_size + 1.0), random_(random) {
@@ -52,11 +60,6 @@ public:
         if (to_.size() == from_.size()) from_.push_back(random_.next_double());
         to_.push_back(mutate(from_[to_.size()]));
         return to_.back();
-    }
-    float next() { return static_cast<float>(std::floor(next_double() * 0x1p24) * 0x1p-24); }
-    Imath::V2f next_2d() {
-        const float x = next();
-        return {x, next()};
     }
 
     /// The numbers that the mutation did not need are changed as well.
