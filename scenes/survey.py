@@ -5,7 +5,7 @@
 
 Every .xml that is a scene is given to `photonlab info`. What opens is rendered shortly by both methods, with the same
 hit points, and the page says the means of each layer, the time and the picture; of what is refused it says why. Nothing
-of the scenes but small pictures goes into the page.
+of the scenes but small pictures goes into the page: one file of all, line by line in the order of its rows.
 """
 
 import argparse
@@ -20,6 +20,7 @@ import numpy
 import OpenImageIO
 
 LAYERS = ("direct", "gathered")
+PICTURES, PICTURES_A_LINE = "pictures.jpg", 12
 METHODS = {
     "path": ["--integrator", "path", "--passes", "64"],
     "ppm": ["--integrator", "ppm", "--passes", "16", "--photons", "100000", "--direct-samples", "4"],
@@ -65,7 +66,7 @@ def reason_of(message, folder):
 
 def render_both(arguments, file, number):
     """One row of the page for a scene that opens."""
-    row = {"scene": str(file.relative_to(arguments.folder))}
+    row = {"": str(number + 1), "scene": str(file.relative_to(arguments.folder))}
     for method, options in METHODS.items():
         image = arguments.output / f"{number}-{method}.exr"
         picture = arguments.output / f"{number}.png"
@@ -75,7 +76,6 @@ def render_both(arguments, file, number):
         if done:
             for layer, mean in layer_means(image).items():
                 row[f"{method} {layer}"] = mean
-            row["picture"] = f"![]({picture.name})"
             image.unlink()
         else:
             row.setdefault("note", f"{method}: {reason_of(said, arguments.folder)}")
@@ -86,11 +86,26 @@ def render_both(arguments, file, number):
     return row
 
 
+def join_pictures(arguments, count):
+    """The pictures of the rows in one, where there are any; a place stays black where neither method could render."""
+    width, height = map(int, arguments.resolution.split("x"))
+    lines = -(-count // PICTURES_A_LINE)
+    sheet = OpenImageIO.ImageBuf(OpenImageIO.ImageSpec(PICTURES_A_LINE * width, lines * height, 3, OpenImageIO.UINT8))
+    for number in range(count):
+        picture = arguments.output / f"{number}.png"
+        if picture.is_file():
+            OpenImageIO.ImageBufAlgo.paste(sheet, number % PICTURES_A_LINE * width, number // PICTURES_A_LINE * height, 0, 0,
+                                           OpenImageIO.ImageBuf(str(picture)))
+            picture.unlink()
+    sheet.write(str(arguments.output / PICTURES))
+
+
 def write_page(arguments, rows, refused):
     """What opened, row by row, and what did not, reason by reason."""
-    columns = ["scene", "picture", "direct ppm/path", "gathered ppm/path", "path s", "ppm s", "note"]
+    columns = ["", "scene", "direct ppm/path", "gathered ppm/path", "path s", "ppm s", "note"]
     total = len(rows) + sum(len(files) for files in refused.values())
-    lines = [f"{len(rows)} of {total} scenes open. Means are of the green channel at {arguments.resolution}.", ""]
+    lines = [f"{len(rows)} of {total} scenes open. Means are of the green channel at {arguments.resolution}.", "",
+             f"![The pictures of all that open, {PICTURES_A_LINE} a line]({PICTURES})", ""]
     lines += ["| " + " | ".join(columns) + " |", "| " + " | ".join("---" for _ in columns) + " |"]
     lines += ["| " + " | ".join(str(row.get(column, "")) for column in columns) + " |" for row in rows]
     lines += ["", "| refused | why | for example |", "| --- | --- | --- |"]
@@ -117,6 +132,7 @@ def main():
         else:
             refused[reason_of(said, arguments.folder)].append(file)
         write_page(arguments, rows, refused)
+    join_pictures(arguments, len(rows))
     print(f"wrote {arguments.output / 'README.md'}: {len(rows)} scenes open")
 
 

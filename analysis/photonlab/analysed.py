@@ -10,7 +10,8 @@ from photonlab.records import files, kept_files
 from photonlab.records.files import InputError
 
 NAME = "analysis.json"
-OTHER_INPUTS = ["probes.csv", "scaling.csv"]    # what commands read beside the records, and what those name with checksums
+# What commands read beside the records, and what those name with checksums.
+OTHER_INPUTS = ["probes.csv", "scaling.csv", "deviations.csv", "relaxation.csv"]
 
 
 def version():
@@ -28,7 +29,7 @@ class Kept:
 
     def __init__(self, folder):
         self.folder = Path(folder)
-        self.inputs = [version(), *(kept_files.hash_of(files.read_bytes(self.folder / name))
+        self.inputs = [version(), *(kept_files.hash_of_file(self.folder / name)
                                     if files.is_there(self.folder / name) else "" for name in OTHER_INPUTS)]
         self.before, self.now = {}, {}
         try:
@@ -50,7 +51,7 @@ class Kept:
             return None
 
     def hash_of(self, name):
-        return kept_files.hash_of(files.read_bytes(self.folder / name))
+        return kept_files.hash_of_file(self.folder / name)
 
     def keep(self, command, made_from, said):
         """Keeps what a command has made: what it says by its name is a file of the folder."""

@@ -88,9 +88,9 @@ class Command:
         return self.read is records.read
 
 
-def parser_of(command):
+def parser_of(command, program="analysis"):
     first, rest = command.about.split("\n\n", 1)
-    parser = argparse.ArgumentParser(prog=f"analysis {command.name}", description=first,
+    parser = argparse.ArgumentParser(prog=f"{program} {command.name}", description=first,
                                      formatter_class=argparse.RawDescriptionHelpFormatter,
                                      epilog=f"Writes {command.writes}.\n\n{rest}")
     parser.add_argument("results", metavar="RESULTS", type=Path, help="folder of an experiment's results")
@@ -115,10 +115,10 @@ def parser_of(command):
 OF_LOOKS = ["scenes", "methods", "width", "no_caption", "format", "style"]    # options of figures for elsewhere
 
 
-def options_of(command, arguments):
-    """The options of a command. `look` is what its figures are to look like, `is_asked` whether anything was asked for. Figures that
+def options_of(command, arguments, program="analysis"):
+    """The options of a command; `program` is what the user has typed before its name. `look` is what its figures are to look like, `is_asked` whether anything was asked for. Figures that
     are to look otherwise, or are of a part of the records, are not those of the folder: they go to a folder of their own."""
-    parser = parser_of(command)
+    parser = parser_of(command, program)
     options = parser.parse_args(arguments)
     asked = {name for name, value in vars(options).items() if value != parser.get_default(name)} - {"results", "rays"}
     options.look = {"width": options.width, "style": options.style} if command.draws else {}

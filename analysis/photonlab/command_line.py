@@ -29,14 +29,15 @@ FIGURE = "figure"        # may stand before the name of one: `photonlab figure c
 def main(arguments):
     """Does what the arguments say; returns the exit code."""
     first, rest = arguments[:1], arguments[1:]
+    program = f"photonlab {first[0]}" if first in [[FIGURE], [ALL]] else "analysis"    # as it was called
     kinds = [command.name for command in COMMANDS if command.draws]
     if first == [FIGURE] and rest[:1] not in [[kind] for kind in kinds]:
         return complain(f"{FIGURE}: expected a kind, one of {', '.join(kinds)}")
-    if first == [FIGURE] or (first == [ALL] and rest):
+    if program != "analysis":
         arguments = rest
     if arguments and arguments[0] in [command.name for command in COMMANDS]:
-        return answered(lambda: make(arguments))
-    return answered(lambda: make_all(folder_in(arguments)))
+        return answered(lambda: make(arguments, program))
+    return answered(lambda: make_all(folder_in(arguments, program)))
 
 
 def answered(work):
@@ -54,10 +55,10 @@ def answered(work):
         return complain("what is to be drawn does not fit into memory")
 
 
-def make(arguments):
+def make(arguments, program):
     """One command."""
     command = next(command for command in COMMANDS if command.name == arguments[0])
-    options = options_of(command, arguments[1:])
+    options = options_of(command, arguments[1:], program)
     results = command.read(options.results)
     if command.selects:
         results = results.only(options.scenes, options.methods)
@@ -102,14 +103,14 @@ def make_all(folder):
     print(*answer, sep="\n", flush=True)
 
 
-def folder_in(arguments):
+def folder_in(arguments, program):
     names = "\n".join(f"  {command.name:16}{command.summary}" for command in COMMANDS)
     parser = argparse.ArgumentParser(
-        prog="analysis", usage="analysis RESULTS\n       analysis COMMAND RESULTS [options]",
+        prog=program, usage=f"{program} RESULTS\n       {program} COMMAND RESULTS [options]",
         description="Draws all that a folder of results has and says which method is best, or with a COMMAND makes one figure or "
                     "table. What is there already and of the same records is not made again.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog=f"commands:\n{names}\n\n`analysis COMMAND --help` says what it writes and how to read it.")
+        epilog=f"commands:\n{names}\n\n`{program} COMMAND --help` says what it writes and how to read it.")
     parser.add_argument("results", metavar="RESULTS", type=Path, help="folder of an experiment's results")
     return parser.parse_args(arguments).results
 

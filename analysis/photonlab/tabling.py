@@ -32,7 +32,7 @@ def make(results, options):
     file = results.folder / options.file
     table = tables.read_table(file)
     if tables.is_stale(table, results.hash):
-        raise InputError(f"{file}: was not made from the records in iterations.csv; run `analysis {results.folder}` again")
+        raise InputError(f"{file}: was not made from the records in iterations.csv; run `photonlab analyse {results.folder}` again")
     for name, kept in [("scene", options.scenes), ("method", options.methods)]:
         if kept and name in table:
             known = set(results.rows[name])

@@ -1,4 +1,5 @@
-// SIGINT and SIGTERM end the program after the pass it is at, with what it has saved. A second one ends it at once.
+// SIGINT and SIGTERM end the program after the pass it is at, with what it has saved. A second one ends it at once,
+// but for a SIGTERM within a second of the first.
 
 #pragma once
 

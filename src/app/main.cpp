@@ -1,5 +1,5 @@
 // The program: one subcommand a task. Bad input and bad usage end with one line and exit code 2, an error of the
-// program's own with 1, an interruption with 3.
+// program's own with 1, an interruption with 3, and what another process is making with 4.
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -20,13 +20,14 @@
 #include "app/interruption.h"
 #include "app/limits.h"
 #include "core/error.h"
-#include "core/machine/version.h"
+#include "core/files/file_lock.h"
 #include "core/text/messages.h"
 
 namespace {
 
 constexpr int bad_input = 2;
 constexpr int internal_error = 1;
+constexpr int held_elsewhere = 4;
 
 /// One line, whatever a message quotes: of more than 2000 bytes the middle is left out.
 std::string one_line(std::string text) {
@@ -63,30 +64,11 @@ int report(const std::string& message, int code) {
     }
 }
 
-void add_commands(CLI::App& app) {
-    using namespace photonlab;
-    const ProgramVersion program = program_version();
-    app.set_version_flag(
-        "--version", fmt::format("photonlab {} (commit {}; {})", program.version, program.commit, program.compiler));
-    app.require_subcommand(1);
-    app.get_formatter()->column_width(34);
-    app.footer(
-        "photonlab help COMMAND says more, with an example.\n\n"
-        "Exit codes: 0 done; 1 an error of the program's own; 2 input that cannot be used, or files that cannot be\n"
-        "written; 3 ended by SIGINT or SIGTERM after the pass it was at, to be continued (a second signal ends at "
-        "once).");
-    add_render_command(app);
-    add_run_command(app);
-    add_reference_command(app);
-    add_compare_command(app);
-    add_info_command(app);
-    add_verify_command(app);
-}
-
 /// Reads the command line and does what it says; its messages are the library's own.
 void run_command(CLI::App& app, std::vector<std::string> words) {
     using namespace photonlab;
     require_command(app, words);
+    if (are_for_analysis(words)) start_analysis(words);
     std::vector<std::string> last_first(words.rbegin(), words.rend());  // as CLI11 takes them
     try {
         app.parse(last_first);
@@ -121,6 +103,8 @@ int main(int argc, char** argv) {
     try {
         photonlab::require_stack();
         return run_program(argc, argv);
+    } catch (const photonlab::HeldElsewhere& error) {
+        return report(error.what(), held_elsewhere);
     } catch (const photonlab::InputError& error) {
         return report(error.what(), bad_input);
     } catch (const photonlab::Interrupted& interruption) {

@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <optional>
 #include <string_view>
 
+#include "app/written_files.h"
 #include "core/error.h"
 #include "core/files/files.h"
 #include "core/text/number_in.h"
@@ -27,6 +26,18 @@ Resolution parse_resolution(const std::string& text) {
         if (fits(width) && fits(height)) return {*width, *height};
     }
     throw InputError(fmt::format("--resolution: expected WIDTHxHEIGHT in pixels, such as 640x480, got \"{}\"", text));
+}
+
+PassesOption parse_passes(const std::string& text) {
+    constexpr std::uint64_t most = 0xffffffffu;
+    const std::size_t dots = text.find("..");
+    const bool is_part = dots != std::string::npos;
+    const auto first = is_part ? number_in<std::uint64_t>(std::string_view(text).substr(0, dots)) : 1;
+    const auto last = number_in<std::uint64_t>(std::string_view(text).substr(is_part ? dots + 2 : 0));
+    if (!first || !last || *first < 1 || *last < *first || *last > most)
+        throw InputError(fmt::format(
+            "--passes: expected how many, from 1 to {}, or a range of them such as 17..32, got \"{}\"", most, text));
+    return {{*first, *last}, is_part};
 }
 
 void SceneParameters::add_to(CLI::App& command) {
@@ -67,17 +78,6 @@ std::string named_by_option(const std::string& message) {
     for (const SettingField& field : setting_fields())
         if (const std::string named = with(field.name, field.option); !named.empty()) return named;
     return message;
-}
-
-const FileKind* kind_named(const std::string& name) {
-    const auto ends_as = [&](const FileKind& kind) {
-        const std::string_view end = kind.extension;
-        return name.size() >= end.size() && std::equal(end.rbegin(), end.rend(), name.rbegin(), [](char a, char b) {
-                   return a == std::tolower(static_cast<unsigned char>(b));
-               });
-    };
-    const auto* found = std::find_if(std::begin(file_kinds), std::end(file_kinds), ends_as);
-    return found == std::end(file_kinds) ? nullptr : found;
 }
 
 std::string require_folder_name(const std::string& text) {

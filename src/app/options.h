@@ -11,13 +11,24 @@
 #include <vector>
 
 #include "core/error.h"
-#include "integrators/chosen_settings.h"
+#include "integrators/settings/chosen_settings.h"
+#include "record/merged_records.h"
+#include "render/pass_range.h"
 #include "scene/scene.h"
 
 namespace photonlab {
 
 /// "640x480"; InputError for anything else.
 Resolution parse_resolution(const std::string& text);
+
+/// What --passes says: how many, or a range of them, of which others take the rest.
+struct PassesOption {
+    PassRange range;
+    bool is_part = false;  ///< A..B
+};
+
+/// "64" or "17..32"; InputError for anything else.
+PassesOption parse_passes(const std::string& text);
 
 /// Values for the $names of a scene file, in place of its <default>s.
 class SceneParameters {
@@ -49,22 +60,11 @@ void check_options(const Check& check) {
     }
 }
 
-/// A kind of file that commands write: what is written is what the name says.
-struct FileKind {
-    std::string_view name;
-    std::string_view extension;  ///< in any case
-    std::string_view option;     ///< of `render`, that writes it
-    std::string_view begins;     ///< how such a file does
-};
-inline constexpr FileKind file_kinds[] = {{"OpenEXR", ".exr", "-o", "\x76\x2f\x31\x01"},
-                                          {"PNG", ".png", "--png", "\x89PNG"},
-                                          {"CSV", ".csv", "--csv", "schema,"}};
-
-/// The kind that a name ends as; nullptr for none.
-const FileKind* kind_named(const std::string& name);
-
 /// A check of CLI11 for a folder that is to be made: it is not called as a file is. Empty where it is sound.
 std::string require_folder_name(const std::string& text);
+
+/// Says which finished runs are not in the merged records. Throws InputError where those are damaged.
+void say_what_was_left_out(const MergedRecords& merged, const std::filesystem::path& records);
 
 /// Options of the settings of a method, one for each field, in a group of their own.
 class MethodOptions {

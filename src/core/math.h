@@ -71,6 +71,27 @@ inline Frame make_frame(const Vector& normal) {
             Vector(b, sign + normal.y * normal.y * a, -normal.y), normal};
 }
 
+/// Frame around `normal` whose tangent is as near to `tangent` as it can be; both are unit, and not parallel.
+inline Frame frame_with_tangent(const Vector& normal, const Vector& tangent) {
+    const Vector along = (tangent - normal * normal.dot(tangent)).normalized();
+    return {along, normal.cross(along), normal};
+}
+
+/// The same as make_frame(), turned by an angle about the normal; radians, from tangent to bitangent.
+inline Frame make_frame(const Vector& normal, float turn) {
+    const Frame frame = make_frame(normal);
+    if (turn == 0.0f) return frame;
+    const float cosine = std::cos(turn);
+    const float sine = std::sin(turn);
+    return {frame.tangent * cosine + frame.bitangent * sine, frame.bitangent * cosine - frame.tangent * sine, normal};
+}
+
+/// The turn that makes `frame`, which is right-handed.
+inline float turn_of(const Frame& frame) {
+    const Vector tangent = make_frame(frame.normal).to_local(frame.tangent);
+    return std::atan2(tangent.y, tangent.x);
+}
+
 /// Moves a surface point off its surface, to the side of `direction`, so that a ray from there does not find the
 /// surface again. The step is some thirty roundings of the largest coordinate of the unit box (or of the point,
 /// where that is larger): relative to the scene, whatever its units.

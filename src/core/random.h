@@ -33,6 +33,7 @@ enum class RandomPurpose : std::uint8_t {
     ReferencePositionsB = 14,
     SeenArea = 15,
     VisiblePaths = 16,
+    LightSequence = 17,
 };
 
 class RandomStream {

@@ -1,5 +1,5 @@
 // What an experiment will make, before it makes any of it: which runs, which of them are finished, which go together,
-// and what they take. Scenes, settings, regions and references that do not fit are refused here.
+// and what memory they take. Scenes, settings, regions and references that do not fit are refused here.
 
 #pragma once
 
@@ -10,14 +10,19 @@
 #include <vector>
 
 #include "core/files/kept_files.h"
-#include "experiment/experiment_file.h"
+#include "experiment/file/experiment_file.h"
 #include "experiment/run_group.h"
 #include "reference/reference.h"
 #include "render/estimates/memory.h"
-#include "render/estimates/time_estimate.h"
 #include "scene/scene.h"
 
 namespace photonlab {
+
+/// Which runs are asked for; all where nothing is said.
+struct RunSelection {
+    std::optional<std::string> name = std::nullopt;  ///< or a shell pattern
+    std::optional<GroupRange> groups = std::nullopt;
+};
 
 struct PreparedExperiment {
     std::vector<std::optional<Scene>> scenes;  ///< by index of Experiment::scenes; only those that a selected run needs
@@ -25,18 +30,20 @@ struct PreparedExperiment {
     std::vector<std::string> faults;           ///< of what had finished and is made again, one line each
 };
 
-/// Loads scenes and checks references for the runs whose name matches `only` (a shell pattern; empty: all). Throws
+/// Loads scenes and checks references of the runs that are selected, and looks at the files of no others. Throws
 /// InputError before anything is run or written, also when the results folder is not the experiment's. How closely
-/// the files of finished runs are looked at is `check`. `experiment` must outlive the result.
+/// the files of finished runs are looked at is `check`. `experiment` must outlive the result, and stay where it is.
 PreparedExperiment prepare_experiment(const Experiment& experiment, const std::filesystem::path& results,
-                                      const std::optional<std::string>& only = std::nullopt,
-                                      Check check = Check::Records);
+                                      const RunSelection& selection = {}, Check check = Check::Records);
+
+/// All runs of an experiment, none of which is looked at: they are not `finished`, whether they are or not.
+PreparedExperiment prepare_all_keys(const Experiment& experiment, const std::filesystem::path& results);
 
 /// True when the run finished with its key, its files are as they were then, and the ensemble has its images.
 bool is_made(const Experiment& experiment, const PreparedRun& run, const std::filesystem::path& results);
 
 /// Everything that changes what the runs of a point record, but their seed: so neither threads nor the title.
-std::string point_key(const Experiment& experiment, const ExperimentRun& run, const RunSettings& settings,
+std::string point_key(const Experiment& experiment, const ExperimentPoint& point, const RunSettings& settings,
                       const Scene& scene, const std::string& reference_key);
 
 /// By which a finished run is recognised.
@@ -69,10 +76,5 @@ struct GroupMemory {
 /// Of the group that takes most; empty without groups. Seeds do not change it.
 std::optional<GroupMemory> largest_memory(const Experiment& experiment, const PreparedExperiment& prepared,
                                           const std::vector<RunsTogether>& groups);
-
-/// One line a run: name, estimated time and memory, or that it is finished; then the sums.
-/// Points are estimated once, however many seeds they have.
-std::string list_runs(const Experiment& experiment, const PreparedExperiment& prepared,
-                      const TimeEstimator& estimate = estimate_time);
 
 }  // namespace photonlab

@@ -92,15 +92,31 @@ void require_own_folders(const Experiment& experiment, const std::filesystem::pa
                                                       quoted(experiment.name), advice));
 }
 
+/// What experiment.json should be.
+std::string description_of(const Experiment& experiment) {
+    return with_checksum({{"schema", schema},
+                          {"experiment", experiment.name},
+                          {"smoke", experiment.is_smoke},
+                          {"title", experiment.title},
+                          {"file", whole_path(experiment.file)},
+                          {"program", {{"name", "photonlab"}, {"version", program_version().version}}}});
+}
+
+/// What experiment.json is; an empty object when it is not there or damaged.
+Json description_in(const std::filesystem::path& results) {
+    return checked_json(read_if_there(description_file(results), largest_json).value_or("")).value_or(Json::object());
+}
+
 bool has_any_run_of(const Experiment& experiment, const std::filesystem::path& results) {
-    return std::any_of(experiment.runs.begin(), experiment.runs.end(),
+    const std::vector<ExperimentRun> runs = runs_of(experiment);
+    return std::any_of(runs.begin(), runs.end(),
                        [&](const ExperimentRun& run) { return is_there(results / "runs" / run.name); });
 }
 
 /// Refuses what experiment.json says, if it is not of this experiment.
 void require_own_description(const Experiment& experiment, const std::filesystem::path& results) {
     const std::filesystem::path file = description_file(results);
-    const Json json = checked_json(read_if_there(file, largest_json).value_or("")).value_or(Json::object());
+    const Json json = description_in(results);
     const auto text = [&](const char* name) {
         const auto found = json.find(name);
         return found != json.end() && found->is_string() ? std::optional(found->get<std::string>()) : std::nullopt;
@@ -126,10 +142,8 @@ void require_own_description(const Experiment& experiment, const std::filesystem
                                                     *there, here, advice));
 }
 
-}  // namespace
-
-void require_own_results(const Experiment& experiment, const std::filesystem::path& results) {
-    if (is_there(description_file(results))) return require_own_description(experiment, results);
+/// Refuses a folder without a description that has results of somebody else.
+void require_unclaimed(const Experiment& experiment, const std::filesystem::path& results) {
     require_own_json(experiment, results / "merged.json");
     require_own_table(experiment, results / "iterations.csv");
     require_own_table(experiment, results / "probes.csv");
@@ -137,25 +151,49 @@ void require_own_results(const Experiment& experiment, const std::filesystem::pa
     require_own_folders(experiment, results / "ensembles", "ensemble.json");
 }
 
+}  // namespace
+
+void require_own_results(const Experiment& experiment, const std::filesystem::path& results) {
+    if (!is_there(description_file(results))) {
+        try {
+            return require_unclaimed(experiment, results);
+        } catch (const InputError&) {
+            if (!is_there(description_file(results))) throw;  // else another job has begun there meanwhile
+        }
+    }
+    require_own_description(experiment, results);
+}
+
 void claim_results(const Experiment& experiment, const std::filesystem::path& results) {
     require_own_results(experiment, results);
     make_folder(results);
-    const Json json{{"schema", schema},
-                    {"experiment", experiment.name},
-                    {"smoke", experiment.is_smoke},
-                    {"title", experiment.title},
-                    {"file", whole_path(experiment.file)},
-                    {"program", {{"name", "photonlab"}, {"version", program_version().version}}}};
-    const std::string text = with_checksum(json);
-    const std::filesystem::path file = description_file(results);
-    if (read_if_there(file, largest_json) != text) write_text_file(file, text);
+    if (!is_claimed(experiment, results)) write_text_file(description_file(results), description_of(experiment));
+}
+
+bool is_claimed(const Experiment& experiment, const std::filesystem::path& results) {
+    return read_if_there(description_file(results), largest_json) == description_of(experiment);
 }
 
 std::optional<std::string> experiment_of_results(const std::filesystem::path& results) {
-    const std::filesystem::path file = description_file(results);
-    const std::optional<Json> json = checked_json(read_if_there(file, largest_json).value_or(""));
-    const Json name = json ? json->value("experiment", Json()) : Json();
+    const Json name = description_in(results).value("experiment", Json());
     return name.is_string() ? std::optional(name.get<std::string>()) : std::nullopt;
+}
+
+Experiment read_experiment_of_results(const std::filesystem::path& results,
+                                      const std::optional<std::filesystem::path>& file) {
+    if (!is_folder(results)) throw InputError(results.string(), "is no folder");
+    const Json description = description_in(results);
+    const Json named = description.value("file", Json());
+    if (!named.is_string() || description.value("schema", Json()) != schema)
+        throw InputError(description_file(results).string(),
+                         "expected the description of an experiment's results, which `photonlab run` writes");
+    const std::filesystem::path read_from = file.value_or(named.get<std::string>());
+    if (!is_there(read_from))
+        throw InputError(read_from.string(),
+                         fmt::format("is not there, and {} names it; say where it is with --experiment",
+                                     description_file(results).string()));
+    return read_experiment(read_from,
+                           description.value("smoke", Json()) == true ? std::optional(SmokeLimits{}) : std::nullopt);
 }
 
 }  // namespace photonlab

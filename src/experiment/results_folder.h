@@ -12,7 +12,7 @@
 #include <optional>
 #include <string>
 
-#include "experiment/experiment_file.h"
+#include "experiment/file/experiment_file.h"
 
 namespace photonlab {
 
@@ -23,7 +23,15 @@ void require_own_results(const Experiment& experiment, const std::filesystem::pa
 /// The same, and writes experiment.json where it is not as it should be. For whoever holds the folder's lock.
 void claim_results(const Experiment& experiment, const std::filesystem::path& results);
 
+/// Whether experiment.json is as it should be: then there is nothing for claim_results() to write.
+bool is_claimed(const Experiment& experiment, const std::filesystem::path& results);
+
 /// The experiment that a folder names; empty when experiment.json is not there or damaged.
 std::optional<std::string> experiment_of_results(const std::filesystem::path& results);
+
+/// The experiment that a folder is of, read from the file that it names, or from `file` where that has moved. Throws
+/// InputError when it cannot be.
+Experiment read_experiment_of_results(const std::filesystem::path& results,
+                                      const std::optional<std::filesystem::path>& file = std::nullopt);
 
 }  // namespace photonlab

@@ -16,7 +16,7 @@
 #include "record/emission_table.h"
 #include "record/merged_records.h"
 #include "record/recorder.h"
-#include "record/run_record.h"
+#include "record/run/run_record.h"
 
 namespace photonlab {
 
@@ -79,8 +79,25 @@ void exchange(StateArchive& archive, PassImage& image) {
     });
 }
 
+/// A run that goes on has one more session than it had: this one.
+void exchange(StateArchive& archive, std::vector<Session>& sessions) {
+    const Session own = sessions.back();
+    archive.exchange_each(sessions, [](StateArchive& each, Session& session) {
+        each.exchange(session.host);
+        each.exchange(session.process);
+        each.exchange(session.job);
+        each.exchange(session.processor);
+        each.exchange(session.threads);
+        each.exchange(session.until_pass);
+    });
+    if (!archive.reads()) return;
+    sessions.push_back(own);
+    if (sessions.size() > 1) sessions.back().until_pass = sessions[sessions.size() - 2].until_pass;
+}
+
 /// What a run holds beside the state of its method.
 void exchange(StateArchive& archive, OpenRun& run) {
+    exchange(archive, run.record.sessions);
     archive.exchange(run.record.started);
     archive.exchange(run.record.seconds);
     run.recorder.exchange(archive);
@@ -100,22 +117,23 @@ void begin_anew(const RunFiles& files) {
 }
 
 OpenRun open_run(const RunGroup& group, const PreparedRun& prepared) {
-    const SceneEntry& entry = group.experiment.scenes[prepared.run->scene];
+    const SceneEntry& entry = group.experiment.scenes[prepared.run.point->scene];
     std::vector<Snapshot> snapshots;
-    for (const std::uint64_t pass : prepared.run->plan.snapshots)
+    for (const std::uint64_t pass : prepared.run.point->plan.snapshots)
         snapshots.push_back({pass, prepared.files.snapshot(pass).lexically_relative(prepared.folder).generic_string()});
-    RunIdentity identity{group.experiment.name,     prepared.run->name,      entry.name,
-                         prepared.run->method,      prepared.settings,       group.scene.camera.width,
-                         group.scene.camera.height, entry.samples_per_pixel, group.hit_points.points.size()};
+    RunIdentity identity{group.experiment.name,      prepared.run.name,       entry.name,
+                         prepared.run.point->method, prepared.settings,       group.scene.camera.width,
+                         group.scene.camera.height,  entry.samples_per_pixel, group.hit_points.points.size()};
     return {&prepared,
             RunRecord{group.experiment.title,
-                      prepared.run->method,
+                      prepared.run.point->method,
                       prepared.key,
                       entry.file,
                       std::chrono::system_clock::now(),
                       0.0,
                       group.runs.size(),
-                      prepared.run->plan.recorded,
+                      {this_session(prepared.settings.threads)},
+                      prepared.run.point->plan.recorded,
                       std::move(snapshots),
                       std::nullopt,
                       {}},
@@ -127,10 +145,12 @@ OpenRun open_run(const RunGroup& group, const PreparedRun& prepared) {
 
 /// Adds the run's images to the sums over seeds; false when it was interrupted while it waited for another process that
 /// adds to them.
-bool add_to_ensemble(const RunGroup& group, const OpenRun& run, const std::function<bool()>& is_interrupted) {
-    const auto lock = lock_ensemble(*run.prepared, group.results, is_interrupted);
+bool add_to_ensemble(const RunGroup& group, const OpenRun& run, const ContinuationOptions& options) {
+    const auto lock = lock_ensemble(*run.prepared, group.results, options.is_interrupted);
     if (!lock) return false;
-    ensemble_of(group.experiment, *run.prepared, group.results).add(run.prepared->run->seed, run.recorded_images);
+    options.require_held();
+    ensemble_of(group.experiment, *run.prepared, group.results)
+        .add(run.prepared->run.seed, run.prepared->run.seed_place, run.recorded_images);
     return true;
 }
 
@@ -148,7 +168,7 @@ void require_snapshots(const OpenRun& run) {
 
 /// How a run that is finished is told of.
 std::string summary_of(const RunGroup& group, const OpenRun& run, const RunState& last) {
-    std::string line = fmt::format("finished {} in {}", run.prepared->run->name, describe_duration(last.times.total()));
+    std::string line = fmt::format("finished {} in {}", run.prepared->run.name, describe_duration(last.times.total()));
     if (run.recorder.last_total_errors()) line += ", rmse " + describe_rmse(*run.recorder.last_total_errors());
     if (run.recorder.nonfinite_pixels() > 0) line += ", with non-finite pixels (run.json says where)";
     if (const auto note = note_of_raised_radii(run.prepared->settings.method, group.scene, group.hit_points))
@@ -175,11 +195,11 @@ void finish(const RunGroup& group, OpenRun& run, const RunState& last) {
         for (std::size_t i = 0; i < run.snapshots.size(); ++i)
             run.record.files[run.record.snapshots[i].file] = run.snapshots[i];
         if (group.experiment.decomposition)
-            run.record.ensemble = {"ensembles/" + run.prepared->run->point, run.prepared->point_key};
+            run.record.ensemble = {"ensembles/" + run.prepared->run.point->name, run.prepared->point_key};
         write_text_file(files.description, with_checksum(run_json(run.record, run.recorder, last, group.scene,
                                                                   group.hit_points, group.reference)));
     }
-    discard(files.checkpoint);
+    if (!files.keeps_state) discard(files.checkpoint);
 }
 
 }  // namespace
@@ -195,30 +215,30 @@ RunFiles files_in(const std::filesystem::path& folder, const std::string& identi
 }
 
 Ensemble ensemble_of(const Experiment& experiment, const PreparedRun& prepared, const std::filesystem::path& results) {
-    const SceneEntry& entry = experiment.scenes[prepared.run->scene];
+    const SceneEntry& entry = experiment.scenes[prepared.run.point->scene];
     Json regions = Json::object();
     for (const Region& region : entry.regions)
         regions[region.name] = {region.left, region.top, region.right, region.bottom};
-    return Ensemble(results / "ensembles" / prepared.run->point, prepared.point_key,
+    return Ensemble(results / "ensembles" / prepared.run.point->name, prepared.point_key,
                     {{"experiment", experiment.name},
                      {"title", experiment.title},
-                     {"point", prepared.run->point},
+                     {"point", prepared.run.point->name},
                      {"scene", entry.name},
-                     {"method", prepared.run->method},
+                     {"method", prepared.run.point->method},
                      {"photons_carry_direct", photons_carry_direct(prepared.settings.method)},
                      {"reference", entry.reference ? Json{{"path", entry.reference->string()}} : Json()},
                      {"working_directory", working_directory()},
                      {"regions", regions},
-                     {"passes", prepared.run->plan.recorded}});
+                     {"passes", prepared.run.point->plan.recorded}});
 }
 
 std::optional<FileLock> lock_ensemble(const PreparedRun& prepared, const std::filesystem::path& results,
                                       const std::function<bool()>& is_interrupted) {
-    return FileLock::wait_for(results / "ensembles" / (prepared.run->point + ".lock"), is_interrupted);
+    return FileLock::wait_for(results / "ensembles" / (prepared.run.point->name + ".lock"), is_interrupted);
 }
 
 GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options, const PassListener& on_pass) {
-    const std::vector<Probe>& probes = group.experiment.scenes[group.runs.at(0)->run->scene].probes;
+    const std::vector<Probe>& probes = group.experiment.scenes[group.runs.at(0)->run.point->scene].probes;
     std::vector<OpenRun> open;
     std::vector<RunSettings> settings;
     for (const PreparedRun* prepared : group.runs) {
@@ -234,6 +254,12 @@ GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options
         for (OpenRun& run : open) run.record.seconds += std::chrono::duration<double>(now - counted).count();
         counted = now;
     };
+    const auto has_come_to = [&](std::uint64_t pass) {
+        for (OpenRun& run : open) {
+            Session& session = run.record.sessions.back();
+            session.until_pass = std::max(session.until_pass, pass);  // one that was ahead of the others stays so
+        }
+    };
     const auto state_of = [&](OpenRun& run, const StateExchange& method) {
         return [&run, &method](StateArchive& archive) {
             method(archive);
@@ -241,6 +267,7 @@ GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options
         };
     };
     const auto restore = [&](std::size_t i, const StateExchange& method) {
+        options.require_held();
         const RunFiles& files = open[i].files();
         if (options.fresh || !load(files.checkpoint, state_of(open[i], method))) begin_anew(files);
         if (!files.snapshots.empty()) make_folder(files.snapshots);
@@ -261,11 +288,13 @@ GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options
         if (!is_last)
             is_interrupted = options.is_interrupted();
         else if (group.experiment.decomposition)
-            is_interrupted = !std::all_of(open.begin(), open.end(), [&](const OpenRun& run) {
-                return add_to_ensemble(group, run, options.is_interrupted);
-            });
-        if (is_interrupted || (is_due && !is_last)) {
+            is_interrupted = !std::all_of(open.begin(), open.end(),
+                                          [&](const OpenRun& run) { return add_to_ensemble(group, run, options); });
+        const bool is_kept = is_last && open[0].files().keeps_state;
+        if (is_interrupted || (is_due && !is_last) || is_kept) {
             count_seconds();
+            has_come_to(pass);
+            options.require_held();
             for (std::size_t i = 0; i < open.size(); ++i)
                 save(open[i].files().checkpoint, state_of(open[i], methods[i]));
             clock.saved();
@@ -276,9 +305,10 @@ GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options
     const std::vector<RunState> last = run_methods(
         group.scene, group.hit_points, settings,
         [&](std::size_t method, const RunState& state, const Image& image) {
+            options.require_held();
             OpenRun& run = open[method];
             run.last_shown = state;
-            const PassPlan& plan = run.prepared->run->plan;
+            const PassPlan& plan = run.prepared->run.point->plan;
             const bool is_last = state.pass == ended_at;
             if ((state.pass < plan.passes && is_last) || contains(plan.recorded, state.pass)) {
                 run.recorder.record(state, image);
@@ -306,7 +336,9 @@ GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options
     GroupOutcome outcome{.passes = last[0].pass};
     if (is_interrupted) return outcome;
     count_seconds();
+    has_come_to(outcome.passes);
     for (std::size_t i = 0; i < open.size(); ++i) {
+        options.require_held();
         finish(group, open[i], last[i]);
         outcome.runs.push_back(
             {open[i].last_shown, open[i].recorder.last_total_errors(), summary_of(group, open[i], last[i])});

@@ -13,13 +13,13 @@
 #include <vector>
 
 #include "core/files/file_lock.h"
-#include "experiment/experiment_file.h"
-#include "record/ensemble.h"
+#include "experiment/file/experiment_file.h"
+#include "record/images/ensemble.h"
 #include "reference/reference.h"
 #include "render/checkpoint.h"
 #include "render/run_methods.h"
 #include "scene/scene.h"
-#include "transport/camera_pass.h"
+#include "transport/camera/camera_pass.h"
 
 namespace photonlab {
 
@@ -32,6 +32,7 @@ struct RunFiles {
     std::filesystem::path snapshots = {};    ///< folder of its own for them
     std::function<std::filesystem::path(std::uint64_t pass)> snapshot;
     Checkpoint checkpoint = {};          ///< its state while it is not finished
+    bool keeps_state = false;            ///< and after its last pass, to be joined with others
     std::filesystem::path picture = {};  ///< PNG of the last image
 };
 
@@ -40,7 +41,7 @@ RunFiles files_in(const std::filesystem::path& folder, const std::string& identi
 
 /// A run that is ready to start: its scene is there, its reference fits.
 struct PreparedRun {
-    const ExperimentRun* run = nullptr;
+    ExperimentRun run;
     RunSettings settings;
     std::string key = "";
     std::string point_key = "";      ///< the same without the seed
@@ -53,8 +54,13 @@ struct PreparedRun {
 struct ContinuationOptions {
     double seconds_between_saves = default_seconds_between_saves;
     bool fresh = false;  ///< begin anew; checkpoints that are there are set aside
+    /// One job of many on the folder: it looks at no files but those of its runs, merges no records, and does not wait
+    /// for what another process is making; where only a lease tells of that, no longer than until it is renewed.
+    bool is_part = false;
     /// Asked after every pass: true ends it there, with a checkpoint.
     std::function<bool()> is_interrupted = [] { return false; };
+    /// Asked before anything is written; throws where another process makes the runs by now.
+    std::function<void()> require_held = [] {};
     /// Asked after every pass with the image of the only run: true ends it there, finished. Empty: never.
     std::function<bool(const Image& image)> is_good_enough = {};
 };

@@ -15,9 +15,9 @@
 #include "core/text/text.h"
 #include "experiment/results_folder.h"
 #include "image/exr.h"
-#include "record/ensemble.h"
+#include "record/images/ensemble.h"
 #include "record/merged_records.h"
-#include "record/run_record.h"
+#include "record/run/run_record.h"
 #include "reference/reference.h"
 #include "render/checkpoint.h"
 

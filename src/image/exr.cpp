@@ -14,11 +14,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <set>
 #include <string_view>
 
@@ -54,10 +56,20 @@ bool is_reserved(const Imf::Header& header, const std::string& name) {
     return header.find(name) != header.end() || reserved.count(name) != 0 || name == layers_attribute;
 }
 
+/// The names of three channels that make a colour.
+using ColorChannels = std::array<std::string, 3>;
+
+constexpr std::string_view composite_layer = "Composite.Combined";  // of a file that Blender's compositor has gone over
+
+/// "direct.R", "direct.G", "direct.B"; of "" the picture.
+ColorChannels channels_of(const std::string& layer) {
+    const std::string prefix = layer.empty() ? "" : layer + ".";
+    return {prefix + "R", prefix + "G", prefix + "B"};
+}
+
 // Slices over a vector of colours that covers the data window from (left, top), one a channel.
-void insert_slices(Imf::FrameBuffer& frame, const std::string& prefix, Color* pixels, int width, int left, int top) {
+void insert_slices(Imf::FrameBuffer& frame, const ColorChannels& names, Color* pixels, int width, int left, int top) {
     static_assert(sizeof(Color) == 3 * sizeof(float));
-    const char* suffixes[] = {"R", "G", "B"};
     const std::size_t pixel_stride = sizeof(Color);
     const std::size_t row_stride = pixel_stride * static_cast<std::size_t>(width);
     for (int channel = 0; channel < 3; ++channel) {
@@ -66,7 +78,7 @@ void insert_slices(Imf::FrameBuffer& frame, const std::string& prefix, Color* pi
         const auto first = reinterpret_cast<std::uintptr_t>(&pixels[0][channel]);
         const auto base = first - static_cast<std::uintptr_t>(static_cast<std::int64_t>(left)) * pixel_stride -
                           static_cast<std::uintptr_t>(static_cast<std::int64_t>(top)) * row_stride;
-        frame.insert(prefix + suffixes[channel],
+        frame.insert(names[static_cast<std::size_t>(channel)],
                      Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(base), pixel_stride, row_stride));
     }
 }
@@ -95,22 +107,68 @@ std::vector<std::string> promised_layers(const std::string& place, const Imf::He
 }
 
 /// True if the three channels are there, with one value a pixel.
-bool has_channels(const Imf::ChannelList& channels, const std::string& prefix) {
-    for (const char* suffix : {"R", "G", "B"}) {
-        const Imf::Channel* channel = channels.findChannel(prefix + suffix);
+bool has_channels(const Imf::ChannelList& channels, const ColorChannels& names) {
+    for (const std::string& name : names) {
+        const Imf::Channel* channel = channels.findChannel(name);
         if (!channel || channel->xSampling != 1 || channel->ySampling != 1) return false;
     }
     return true;
 }
 
+/// Colours as other programs call them: LAYER.R, or LAYER.r, LAYER.red, whether there is a layer or not.
+std::vector<ColorChannels> colors_in(const Imf::ChannelList& channels) {
+    std::vector<ColorChannels> found;
+    for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
+        const std::string name = channel.name();
+        const std::size_t dot = name.rfind('.');
+        const std::string layer = dot == std::string::npos ? "" : name.substr(0, dot + 1);
+        for (const ColorChannels& last : {ColorChannels{"R", "G", "B"}, {"r", "g", "b"}, {"red", "green", "blue"}}) {
+            const ColorChannels names{layer + last[0], layer + last[1], layer + last[2]};
+            if (name == names[0] && has_channels(channels, names)) found.push_back(names);
+        }
+    }
+    return found;
+}
+
+/// "ViewLayer.Combined" of the channel ViewLayer.Combined.R; empty of R.
+std::string layer_of(const std::string& channel) {
+    const std::size_t dot = channel.rfind('.');
+    return dot == std::string::npos ? "" : channel.substr(0, dot);
+}
+
+/// The colours of Blender's passes "Combined", of one layer or several.
+std::vector<ColorChannels> combined_in(const Imf::ChannelList& channels) {
+    std::vector<ColorChannels> combined = colors_in(channels);
+    std::erase_if(combined, [](const ColorChannels& names) {
+        const std::string layer = layer_of(names[0]);
+        return layer != "Combined" && !layer.ends_with(".Combined");
+    });
+    return combined;
+}
+
+/// The picture in another program's file: what has no layer's name; in Blender's files what its compositor made, or the
+/// pass "Combined" of the only layer that has one; or the only colour that there is. Nothing where that does not tell.
+std::optional<ColorChannels> find_picture(const Imf::ChannelList& channels) {
+    if (has_channels(channels, channels_of(""))) return channels_of("");
+    const std::vector<ColorChannels> colors = colors_in(channels);
+    for (const ColorChannels& names : colors)
+        if (layer_of(names[0]).empty()) return names;
+    const std::vector<ColorChannels> combined = combined_in(channels);
+    for (const ColorChannels& names : combined)
+        if (layer_of(names[0]) == composite_layer) return names;
+    if (combined.size() == 1) return combined[0];
+    return colors.size() == 1 ? std::optional(colors[0]) : std::nullopt;
+}
+
 /// Says what is missing of three channels, which something is.
 [[noreturn]] void refuse_channels(const std::string& place, const Imf::ChannelList& channels,
-                                  const std::string& prefix) {
-    for (const std::string& name : {prefix + "R", prefix + "G", prefix + "B"})
+                                  const ColorChannels& names) {
+    for (const std::string& name : names)
         if (!channels.findChannel(name))
             throw InputError(place, "has no channel " + name + "; it has: " + channel_names(channels) +
                                         (channels.findChannel("Y") ? " (luminance is not read as grey)" : ""));
-    throw InputError(place, "its channels " + prefix + "R, G, B are subsampled; expected one value a pixel");
+    throw InputError(place, "its channels " + names[0] + ", " + names[1] + ", " + names[2] +
+                                " are subsampled; expected one value a pixel");
 }
 
 /// Lines that a compression takes together.
@@ -161,7 +219,7 @@ ColorD sum_of_layers(const Image& image, std::size_t pixel) {
 /// What of a file is read.
 struct Contents {
     std::vector<std::string> layers;
-    bool has_picture = false;  ///< R, G, B
+    std::optional<ColorChannels> picture;
 };
 
 /// Everything of ours that is there. Throws InputError when that does not tell the picture, and it is asked for, or
@@ -170,15 +228,17 @@ Contents find_contents(const std::string& place, const Imf::Header& header, cons
     const Imf::ChannelList& channels = header.channels();
     const std::vector<std::string> promised = promised_layers(place, header);
     Contents contents;
-    contents.has_picture = has_channels(channels, "");
+    contents.picture = promised.empty()                          ? find_picture(channels)
+                       : has_channels(channels, channels_of("")) ? std::optional(channels_of(""))
+                                                                 : std::nullopt;
     for (const std::string& name : promised)
-        if (has_channels(channels, name + ".")) contents.layers.push_back(name);
+        if (has_channels(channels, channels_of(name))) contents.layers.push_back(name);
     const bool is_whole = !promised.empty() && contents.layers.size() == promised.size();
     // Only who asks for a layer by name takes another program's channels for it.
-    if (promised.empty() && component != total_layer && has_channels(channels, component + "."))
+    if (promised.empty() && component != total_layer && has_channels(channels, channels_of(component)))
         contents.layers.push_back(component);
-    if (!contents.has_picture && !is_whole && (component == total_layer || contents.layers.empty()))
-        refuse_channels(place, channels, component == total_layer ? "" : component + ".");
+    if (!contents.picture && !is_whole && (component == total_layer || contents.layers.empty()))
+        refuse_channels(place, channels, channels_of(component == total_layer ? "" : component));
     return contents;
 }
 
@@ -239,16 +299,17 @@ Image read_pixels(const std::filesystem::path& file, Metadata* metadata, const s
     image.height = static_cast<int>(height);
     const auto pixels = static_cast<std::size_t>(width * height);
     for (const std::string& name : contents.layers) image.layers.push_back({name, std::vector<Color>(pixels)});
-    std::vector<Color> picture(contents.has_picture ? pixels : 0);
+    std::vector<Color> picture(contents.picture ? pixels : 0);
     Imf::FrameBuffer frame;
     for (Layer& layer : image.layers)
-        insert_slices(frame, layer.name + ".", layer.pixels.data(), image.width, window.min.x, window.min.y);
-    if (contents.has_picture) insert_slices(frame, "", picture.data(), image.width, window.min.x, window.min.y);
+        insert_slices(frame, channels_of(layer.name), layer.pixels.data(), image.width, window.min.x, window.min.y);
+    if (contents.picture)
+        insert_slices(frame, *contents.picture, picture.data(), image.width, window.min.x, window.min.y);
     Imf::InputPart part(input, 0);
     part.setFrameBuffer(frame);
     part.readPixels(window.min.y, window.max.y);
 
-    if (contents.has_picture) complete(image, std::move(picture));
+    if (contents.picture) complete(image, std::move(picture));
     if (metadata) *metadata = string_attributes(header);
     return image;
 }
@@ -284,20 +345,23 @@ std::string encode(const Image& image, const Metadata& metadata, ExrCompression 
     const std::vector<Color> sum = layered ? rounded_total(image) : std::vector<Color>{};
 
     Imf::FrameBuffer frame;
-    const auto add = [&](const std::string& prefix, const std::vector<Color>& pixels) {
-        for (const char* suffix : {"R", "G", "B"}) header.channels().insert(prefix + suffix, Imf::Channel(Imf::FLOAT));
+    const auto add = [&](const std::string& name, const std::vector<Color>& pixels) {
+        for (const std::string& channel : channels_of(name))
+            header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
         // OpenEXR's slices are not const, though writing a file only reads them.
-        insert_slices(frame, prefix, const_cast<Color*>(pixels.data()), image.width, 0, 0);
+        insert_slices(frame, channels_of(name), const_cast<Color*>(pixels.data()), image.width, 0, 0);
     };
     add("", layered ? sum : image.layers[0].pixels);
     if (layered)
-        for (const Layer& layer : image.layers) add(layer.name + ".", layer.pixels);
+        for (const Layer& layer : image.layers) add(layer.name, layer.pixels);
     std::vector<Layer> estimates;
     if (image.estimated_error) estimates = layers_of(*image.estimated_error);
-    for (const Layer& layer : estimates) add(layer.name + ".", layer.pixels);
-    if (!image.radius.empty()) {
-        header.channels().insert("radius", Imf::Channel(Imf::FLOAT));
-        frame.insert("radius", Imf::Slice::Make(Imf::FLOAT, image.radius.data(), header.dataWindow()));
+    for (const Layer& layer : estimates) add(layer.name, layer.pixels);
+    for (const auto& [name, values] :
+         {std::pair{"radius", &image.radius}, {"count", &image.count}, {"density", &image.density}}) {
+        if (values->empty()) continue;
+        header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+        frame.insert(name, Imf::Slice::Make(Imf::FLOAT, values->data(), header.dataWindow()));
     }
 
     Imf::StdOSStream stream;
@@ -392,6 +456,17 @@ auto read_checked(const std::filesystem::path& file, const Read& read) {
 
 }  // namespace
 
+std::string chosen_picture(const std::filesystem::path& file) {
+    return read_checked(file, [&] {
+        const Imf::MultiPartInputFile input(file.c_str(), 0, false);
+        const Imf::ChannelList& channels = input.header(0).channels();
+        const auto picture = find_picture(channels);
+        const bool is_choice =
+            picture && layer_of((*picture)[0]) == composite_layer && combined_in(channels).size() > 1;
+        return std::string(is_choice ? composite_layer : "");
+    });
+}
+
 Image read_exr(const std::filesystem::path& file, Metadata* metadata, const std::string& component) {
     return read_checked(file, [&] { return read_pixels(file, metadata, component); });
 }
@@ -415,7 +490,8 @@ Metadata read_sealed_metadata(const std::filesystem::path& file) {
 void require_seal(const std::filesystem::path& file) {
     require_ordinary_file(file);
     std::ifstream stream(file, std::ios::binary);
-    std::string piece(std::size_t{1} << 24, '\0');  // the header is in the first
+    constexpr std::uintmax_t most_at_once = std::uintmax_t{1} << 24;  // bytes; the header is in the first
+    std::string piece(std::min(size_of_file(file), most_at_once) + 1, '\0');
     std::string stored;
     RunningHash hash;
     while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())) || stream.gcount() > 0) {

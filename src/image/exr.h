@@ -7,7 +7,8 @@
 // sum to the picture: without it, R, G, B alone are read.
 //
 // What a method says of its own error is in estimated_bias.R, ... and estimated_deviation.R, ..., beside the picture:
-// not among the layers, and read only by name. So is the radius of its next gather, in one channel called radius.
+// not among the layers, and read only by name. So is the radius of its next gather, in one channel called radius, and
+// where it was asked for how many photons it holds there (count) and how close they lie (density).
 //
 // The picture is R, G, B. Where another program has taken layers away, or has changed them or R, G, B, the difference
 // is read as one more layer, "rest", so that the sum of the layers is always the picture.
@@ -48,8 +49,10 @@ Metadata read_sealed_metadata(const std::filesystem::path& file);
 void require_seal(const std::filesystem::path& file);
 
 /// Reads an image. Layers are those named by `photonlab.layers` as far as they are there, in that order; in a file
-/// without it (another renderer's), R, G, B become one layer called "total". Channels may be float, half or uint, the
-/// data window anywhere; alpha and other channels are left out. `metadata` gets every string attribute.
+/// without it (another program's), R, G, B become one layer called "total", or r, g, b, or red, green, blue, or of a
+/// file of Blender Composite.Combined.R, ..., or LAYER.Combined.R, ... where one layer has them, or the only three such
+/// channels. Channels may be float, half or uint, the data window anywhere; alpha and other channels are left out.
+/// `metadata` gets every string attribute.
 ///
 /// `component` is what the image is read for: "total", or one layer. Only for the whole must R, G, B be there, or else
 /// every layer; a layer that is asked for by name is read without `photonlab.layers`, too.
@@ -57,6 +60,10 @@ void require_seal(const std::filesystem::path& file);
 /// Throws InputError: not an EXR, truncated, no R, G, B (luminance alone is refused, not guessed to be grey),
 /// several parts, deep, subsampled, a size that the file cannot hold.
 Image read_exr(const std::filesystem::path& file, Metadata* metadata = nullptr, const std::string& component = "total");
+
+/// What read_exr() takes for the picture of a file of Blender that has several: "Composite.Combined", what the
+/// compositor made of the layers. Empty where there is nothing to choose from. Throws InputError.
+std::string chosen_picture(const std::filesystem::path& file);
 
 /// The string attributes alone. Throws InputError when it is not an EXR.
 Metadata read_exr_metadata(const std::filesystem::path& file);

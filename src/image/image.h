@@ -30,7 +30,9 @@ struct Image {
     std::vector<Layer> layers;
     // No layers: beside the picture.
     std::optional<EstimatedError> estimated_error = std::nullopt;
-    std::vector<float> radius = {};  ///< scene units, a value a pixel, 0 where nothing is gathered; or empty
+    std::vector<float> radius = {};   ///< scene units, a value a pixel, 0 where nothing is gathered; or empty
+    std::vector<float> count = {};    ///< photons, likewise; where it was asked for
+    std::vector<float> density = {};  ///< photons a squared scene unit, likewise
 
     /// The layer's pixels; nullptr when there is none of that name.
     const std::vector<Color>* find(std::string_view name) const;

@@ -1,6 +1,6 @@
-// Image files by OpenImageIO, in a shared library of its own that is loaded when the first such file is read or
-// written: OpenImageIO brings some 250 libraries, whose start takes longer than a small render. It is looked for beside
-// the program, so that the two can be moved together.
+// Image files by OpenImageIO, in a shared library of its own that is loaded when the first is read that is no plain PNG
+// (plain_png.h): OpenImageIO brings some 250 libraries, whose start takes longer than a small render. It is looked for
+// beside the program, so that the two can be moved together.
 
 #pragma once
 
@@ -27,10 +27,6 @@ struct ImageCodecs {
     /// Reads a BMP, EXR, HDR, JPEG, PNG, TGA or TIFF of at most 2^26 pixels, whose memory is asked for before it is
     /// taken. Throws InputError.
     DecodedImage (*read)(const std::filesystem::path& file, RequireMemory require_memory);
-
-    /// Writes 8-bit sRGB to `temporary`; `file` is its name in messages. Throws InputError.
-    void (*write_png)(const std::filesystem::path& temporary, const std::filesystem::path& file, int width, int height,
-                      const std::vector<std::uint8_t>& bytes);
 };
 
 /// The codecs, loaded by the first call. Throws InputError when their library is missing.

@@ -114,6 +114,13 @@ const std::vector<Metric>& metrics() {
          [](const Pixels& pixels) {
              return pixels.mean([](const Value& v) { return square(v.x - v.r) / (v.r * v.r + 0.01); });
          }},
+        {"relmse_unbiased", "", "relMSE without the reference's noise",
+         "mean of (x - A)(x - B) / (r² + 0.01), as `mse_unbiased`; the noise that is left in the weights moves it by "
+         "the noise squared",
+         true,
+         [](const Pixels& pixels) {
+             return pixels.mean([](const Value& v) { return (v.x - v.a) * (v.x - v.b) / (v.r * v.r + 0.01); });
+         }},
         {"smape", "", "SMAPE", "mean of |x - r| / (|x| + |r| + 1e-6), the 1e-6 in units of radiance", false,
          [](const Pixels& pixels) {
              return pixels.mean(

@@ -70,22 +70,11 @@ DecodedImage read(const std::filesystem::path& file, RequireMemory require_memor
     return image;
 }
 
-void write_png(const std::filesystem::path& temporary, const std::filesystem::path& file, int width, int height,
-               const std::vector<std::uint8_t>& bytes) {
-    const auto output = OIIO::ImageOutput::create("png");
-    if (!output) throw InputError(file.string(), "cannot be written: this OpenImageIO has no PNG: " + OIIO::geterror());
-    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    if (!output->open(temporary.string(), spec) || !output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) ||
-        !output->close())
-        throw InputError(file.string(), "cannot be written: " + output->geterror());
-}
-
 }  // namespace
 
 extern "C" {
 extern const ImageCodecs photonlab_image_codecs;
-const ImageCodecs photonlab_image_codecs{read, write_png};
+const ImageCodecs photonlab_image_codecs{read};
 }
 
 }  // namespace photonlab

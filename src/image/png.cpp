@@ -7,13 +7,13 @@
 
 #include "core/error.h"
 #include "core/files/temporary_file.h"
-#include "image/image_codecs.h"
+#include "image/plain_png.h"
 
 namespace photonlab {
 
 namespace {
 
-/// True when the file ends as a PNG does: OpenImageIO does not say that the disk was full.
+/// True when the file ends as a PNG does, for a disk that was full.
 bool has_end(const std::filesystem::path& file) {
     static constexpr char end[] = {0, 0, 0, 0, 'I', 'E', 'N', 'D', '\xae', '\x42', '\x60', '\x82'};
     char found[sizeof(end)] = {};
@@ -47,7 +47,7 @@ void write_png(const std::filesystem::path& file, int width, int height, const s
     }
 
     TemporaryFile temporary(file);
-    image_codecs().write_png(temporary.path(), file, width, height, bytes);
+    write_plain_png(temporary.path(), file, width, height, bytes);
     if (!has_end(temporary.path())) throw InputError(file.string(), "cannot be written wholly: is the disk full?");
     temporary.rename();
 }

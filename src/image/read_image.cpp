@@ -1,8 +1,11 @@
 #include "image/read_image.h"
 
+#include <cctype>
+#include <optional>
+
 #include "core/files/files.h"
 #include "core/machine/available_memory.h"
-#include "image/image_codecs.h"
+#include "image/plain_png.h"
 
 namespace photonlab {
 
@@ -10,9 +13,22 @@ double srgb_to_linear(double value) {
     return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
 }
 
+namespace {
+
+/// As for image_codecs(), an image's ending says what it is: another than .png is not tried as one.
+std::optional<DecodedImage> read_if_plain_png(const std::filesystem::path& file) {
+    std::string ending = file.extension().string();
+    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (ending != ".png") return std::nullopt;
+    return read_plain_png(file, require_memory_for);
+}
+
+}  // namespace
+
 ColorImage read_color_image(const std::filesystem::path& file, bool raw) {
     require_ordinary_file(file);
-    const DecodedImage decoded = image_codecs().read(file, require_memory_for);
+    std::optional<DecodedImage> plain = read_if_plain_png(file);
+    const DecodedImage decoded = plain ? std::move(*plain) : image_codecs().read(file, require_memory_for);
     const auto channels = static_cast<std::size_t>(decoded.channels);
     const std::size_t count = decoded.values.size() / channels;
     const bool decode = !raw && !decoded.is_floating_point;

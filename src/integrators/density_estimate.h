@@ -2,7 +2,7 @@
 //
 // L = sum over photons of f power K w / (pi r^2 N), with N emitted paths; here everything but the division. w is 1 in a
 // whole disc, and elsewhere what makes the area that is there of the disc's.
-// [Jensen 2001, equation 7.6; kernels: gather/kernel.h; w: gather/area_weights.h]
+// [Jensen 2001, equation 7.6; kernels: gather/kernel.h; w: gather/areas/area_weights.h]
 
 #pragma once
 
@@ -16,12 +16,12 @@
 #include "core/math.h"
 #include "core/parallel.h"
 #include "gather/kernel.h"
-#include "gather/photon_map.h"
-#include "gather/search_order.h"
+#include "gather/map/photon_map.h"
+#include "gather/map/search_order.h"
 #include "integrators/integrator.h"
 #include "integrators/photon_moments.h"
 #include "scene/scene.h"
-#include "transport/hit_point_list.h"
+#include "transport/camera/hit_point_list.h"
 #include "transport/path_length.h"
 
 namespace photonlab {
@@ -38,7 +38,7 @@ public:
         if (uniform && !is_turned) {
             uniform_ = *uniform;
         } else {
-            const Frame frame = make_frame(point.normal);
+            const Frame frame = make_frame(point.normal, point.turn);
             glossy_.emplace(Glossy{bsdf, frame, frame.to_local(point.outgoing), point.geometric_normal, is_turned});
         }
     }

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/files/state_archive.h"
-#include "gather/adaptive_radius.h"
+#include "gather/radii/adaptive_radius.h"
 #include "image/image.h"
 #include "integrators/integrator.h"
 

@@ -7,16 +7,17 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/files/state_archive.h"
 #include "core/random.h"
-#include "gather/accepting_discs.h"
-#include "gather/photon_map.h"
+#include "gather/areas/accepting_discs.h"
+#include "gather/map/photon_map.h"
 #include "image/image.h"
-#include "integrators/settings.h"
+#include "integrators/settings/settings.h"
 #include "scene/scene.h"
-#include "transport/camera_pass.h"
+#include "transport/camera/camera_pass.h"
 
 namespace photonlab {
 
@@ -32,8 +33,9 @@ struct Needs {
         ByItself,  ///< the method brings the layer
     };
     enum class Passes {
-        Ordered,      ///< a pass depends on those before it
-        Independent,  ///< passes can be taken from any number on; the image is a mean over those that were taken
+        Ordered,        ///< a pass depends on those before it
+        AfterLearning,  ///< on those that emission learns from alone: independent once that is frozen
+        Independent,    ///< passes can be taken from any number on; the image is a mean over those that were taken
     };
 
     /// Other hit points in every pass; empty: the same in all, so that the image converges to radiance at these.
@@ -41,8 +43,14 @@ struct Needs {
     Photons photons = Photons::None;
     bool has_own_photons = false;  ///< they follow from where it gathers, or from what it found there before: no other
                                    ///< method can share them
+    bool holds_photons = false;    ///< between passes, as many as the first brought; what take() does with them is a
+                                   ///< stage of its own
     Direct direct = Direct::ByLoop;
     Passes passes = Passes::Ordered;
+    std::string_view ordered_since = "";  ///< why they are, as the end of a sentence
+
+    /// States of disjoint passes can be joined, to the bits of a run of all.
+    bool can_be_joined() const { return passes != Passes::Ordered; }
 };
 
 /// What a method takes of one pass.
@@ -72,8 +80,10 @@ struct MethodLayers {
 
 /// What a method can say of itself between two passes. Radii in scene units; empty where it has no such thing.
 struct IntegratorReport {
-    std::uint64_t photons_gathered = 0;  ///< photons accepted at hit points, summed over points and passes
-    std::uint64_t bytes = 0;             ///< of its statistics
+    std::uint64_t photons_gathered = 0;   ///< photons accepted at hit points, summed over points and passes
+    std::uint64_t bytes = 0;              ///< of its statistics
+    std::uint64_t photons_left_out = 0;   ///< where photons bring their flux to others: those that found none
+    std::uint64_t inexact_additions = 0;  ///< where sums are exact: those that were not, of channels
     std::optional<double> radius_min =
         std::nullopt;  ///< over hit points, of the last gather (photonmapper) or for the next (ppm)
     std::optional<double> radius_mean = std::nullopt;
@@ -111,7 +121,8 @@ public:
     virtual MethodLayers image(const PhotonsOfAllPasses* photons) = 0;
 
     /// Writes or reads everything that the passes so far left here, between two passes. One made from the same settings
-    /// and context that reads it goes on as this one would have, to the bit; photons are not in it.
+    /// and context that reads it goes on as this one would have, to the bit; photons are not in it. Where passes can be
+    /// joined, an archive that joins adds those of the state that it reads.
     virtual void exchange(StateArchive& archive) = 0;
 
     virtual IntegratorReport report() const = 0;

@@ -6,13 +6,12 @@
 //
 // [Kajiya 1986, "The Rendering Equation"; Veach & Guibas 1995, "Optimally Combining Sampling Techniques"]
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
-#include "core/error.h"
 #include "core/parallel.h"
+#include "integrators/findable_light.h"
 #include "integrators/layers.h"
+#include "integrators/pass_sums.h"
 #include "integrators/registry.h"
 #include "scene/emitter.h"
 #include "transport/direct_light.h"
@@ -30,15 +29,6 @@ struct PathSample {
     ColorD gathered = ColorD(0.0);
 };
 
-/// Density per steradian with which connect_to_light() draws the light that was found in `direction`.
-double connection_density(const Scene& scene, const Surface& surface, const Vector& direction,
-                          const std::optional<Hit>& hit) {
-    const std::uint32_t light = hit ? scene.shapes[hit->shape].emitter : *scene.environment;
-    const double density =
-        hit ? direct_density(scene, surface.position, direction, *hit) : escaped_density(scene, direction);
-    return scene.emitters[light].choice_probability * density;
-}
-
 PathSample trace_path(const Scene& scene, const HitPoint& point, int max_depth, RandomStream& random) {
     PathSample result;
     Surface surface = surface_at(scene, point);
@@ -52,10 +42,7 @@ PathSample trace_path(const Scene& scene, const HitPoint& point, int max_depth, 
 
         if (is_scattering(surface.bsdf)) {
             if (const auto light = connect_to_light(scene, surface, outgoing, random)) {
-                const double weight = light->light_density > 0.0
-                                          ? light->light_density / (light->light_density + light->bsdf_density)
-                                          : 1.0;
-                layer += ColorD(throughput) * light->contribution * weight;
+                layer += ColorD(throughput) * light->contribution * weight_of_connection(*light);
             }
         }
 
@@ -72,9 +59,7 @@ PathSample trace_path(const Scene& scene, const HitPoint& point, int max_depth, 
             intersect(scene, {offset_from_surface(surface.position, surface.geometric_normal, direction), direction});
         const ColorD emitted = hit ? emitted_radiance(scene, *hit, -direction) : escaped_radiance(scene, direction);
         if (!is_black(emitted)) {
-            double weight = 1.0;  // of a specular direction: connecting to the light cannot find it
-            if (bounce->density > 0.0f)
-                weight = bounce->density / (bounce->density + connection_density(scene, surface, direction, hit));
+            const double weight = weight_of_ray(scene, surface.position, direction, hit, bounce->density);
             layer += ColorD(throughput) * emitted * weight;
         }
         if (!hit) break;
@@ -92,102 +77,102 @@ PathSample trace_path(const Scene& scene, const HitPoint& point, int max_depth, 
     return result;
 }
 
-/// Light of what has no size that reaches a diffuse surface by a mirror or through glass is found by photons alone: a
-/// path from the camera would have to hit a point, or the one direction.
-void require_findable_light(const Scene& scene, int max_depth) {
-    const auto hidden = std::find_if_not(scene.emitters.begin(), scene.emitters.end(), is_met_by_rays);
-    if (hidden == scene.emitters.end() || !depth_allows(max_depth, 3)) return;
-    for (const Shape& shape : scene.shapes) {
-        const Material& material = scene.materials[shape.material];
-        if (may_be_specular(material))
-            throw InputError(scene.name,
-                             fmt::format("cannot be path traced: it has a {} light and a {} (\"{}\"), and no path "
-                                         "from the camera can find light without size by a mirror or through glass, "
-                                         "so all its caustics would be missing; use ppm, also for a reference",
-                                         emitter_kind(*hidden), material_kind(material), material.id));
-    }
-}
-
 class PathTracing : public Integrator {
 public:
     PathTracing(const MethodSettings& settings, const IntegratorContext& context)
         : max_depth_(settings.max_depth),
           context_(context),
-          has_new_points_(settings.positions == Positions::Box),
-          sums_(has_new_points_ ? pixel_count(context.hit_points) : context.hit_points.points.size()) {
-        require_findable_light(context.scene, max_depth_);
+          has_new_points_(settings.positions != Positions::Grid),
+          direct_(has_new_points_ ? pixel_count(context.hit_points) : context.hit_points.points.size(), true),
+          gathered_(direct_.size(), true) {
+        require_findable_light(context.scene, max_depth_, "cannot be path traced",
+                               "all its caustics would be missing; use ppm, also for a reference");
     }
 
     void take(const Pass& pass) override {
         if (has_new_points_) {
             std::vector<PathSample> of_pass(pass.points.points.size());
-            add_paths(pass.number, pass.points, of_pass);
+            trace_paths(pass.number, pass.points, [&](std::size_t i, const PathSample& path) { of_pass[i] = path; });
             add_to_pixels(pass.points.points, of_pass);
         } else {
-            add_paths(pass.number, pass.points, sums_);
+            trace_paths(pass.number, pass.points, [&](std::size_t i, const PathSample& path) { add(i, path); });
         }
         ++passes_;
     }
 
     MethodLayers image(const PhotonsOfAllPasses*) override {
         const double share = 1.0 / static_cast<double>(passes_);
-        if (passes_ > 0) return has_new_points_ ? layers_of_pixels(share) : layers_of(sums_, share, true);
-        std::vector<PathSample> once(context_.hit_points.points.size());
-        add_paths(0, context_.hit_points, once);
-        return layers_of(once, 1.0, false);
+        if (passes_ > 0 && has_new_points_) return layers_of_pixels(share);
+        if (passes_ > 0)
+            return {.gathered = to_pixels(
+                        context_.hit_points, [&](std::size_t i) { return gathered_[i]; }, share),
+                    .direct = to_pixels(
+                        context_.hit_points, [&](std::size_t i) { return direct_[i]; }, share)};
+        std::vector<ColorD> once(context_.hit_points.points.size());
+        trace_paths(0, context_.hit_points, [&](std::size_t i, const PathSample& path) { once[i] = path.direct; });
+        return {.gathered = std::vector<Color>(pixel_count(context_.hit_points), Color(0.0f)),
+                .direct = to_pixels(
+                    context_.hit_points, [&](std::size_t i) { return once[i]; }, 1.0)};
     }
 
-    IntegratorReport report() const override { return {.bytes = sums_.size() * sizeof(PathSample)}; }
+    IntegratorReport report() const override {
+        return {.bytes = direct_.bytes() + gathered_.bytes(),
+                .inexact_additions = direct_.inexact_additions() + gathered_.inexact_additions()};
+    }
 
     void exchange(StateArchive& archive) override {
-        archive.exchange(passes_);
-        archive.exchange_as_many(sums_);
+        archive.exchange_sum(passes_);
+        direct_.exchange(archive);
+        gathered_.exchange(archive);
     }
 
 private:
-    void add_paths(std::uint64_t pass, const HitPoints& hit_points, std::vector<PathSample>& sums) const {
+    /// `take(index, path)` of a path from each hit point, on any thread.
+    template <typename Take>
+    void trace_paths(std::uint64_t pass, const HitPoints& hit_points, const Take& take) const {
         const HitPointList& points = hit_points.points;
         parallel_for(block_count(points.size(), hit_points_per_block), context_.threads, [&](std::size_t block) {
             const BlockRange range = block_range(block, points.size(), hit_points_per_block);
             RandomStreams streams(context_.seed, context_.path_purpose, pass);
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 RandomStream random = streams[i];
-                const PathSample path = trace_path(context_.scene, points[i], max_depth_, random);
-                sums[i].direct += path.direct;
-                sums[i].gathered += path.gathered;
+                take(i, trace_path(context_.scene, points[i], max_depth_, random));
             }
         });
     }
 
-    MethodLayers layers_of(const std::vector<PathSample>& sums, double scale, bool with_gathered) const {
-        return {.gathered = to_pixels(
-                    context_.hit_points, [&](std::size_t i) { return with_gathered ? sums[i].gathered : ColorD(0.0); },
-                    scale),
-                .direct = to_pixels(
-                    context_.hit_points, [&](std::size_t i) { return sums[i].direct; }, scale)};
+    void add(std::size_t place, const PathSample& path) {
+        direct_.add(place, path.direct);
+        gathered_.add(place, path.gathered);
     }
 
+    /// What the paths of a pass give to each pixel together; the points of one follow each other.
     void add_to_pixels(const HitPointList& points, const std::vector<PathSample>& paths) {
+        PathSample of_pixel;
         for (std::size_t i = 0; i < paths.size(); ++i) {
             const HitPoint point = points[i];
-            sums_[point.pixel].direct += paths[i].direct * ColorD(point.weight);
-            sums_[point.pixel].gathered += paths[i].gathered * ColorD(point.weight);
+            of_pixel.direct += paths[i].direct * ColorD(point.weight);
+            of_pixel.gathered += paths[i].gathered * ColorD(point.weight);
+            if (i + 1 < paths.size() && points[i + 1].pixel == point.pixel) continue;
+            add(point.pixel, of_pixel);
+            of_pixel = {};
         }
     }
 
     MethodLayers layers_of_pixels(double scale) const {
         MethodLayers layers;
-        for (const PathSample& sum : sums_) {
-            layers.gathered.push_back(Color(sum.gathered * scale));
-            layers.direct.push_back(Color(sum.direct * scale));
+        for (std::size_t pixel = 0; pixel < direct_.size(); ++pixel) {
+            layers.gathered.push_back(Color(gathered_[pixel] * scale));
+            layers.direct.push_back(Color(direct_[pixel] * scale));
         }
         return layers;
     }
 
     const int max_depth_;
     const IntegratorContext context_;
-    const bool has_new_points_;     // in every pass
-    std::vector<PathSample> sums_;  // over passes: one a hit point, or one a pixel where points are new
+    const bool has_new_points_;  // in every pass
+    PassSums direct_;            // one a hit point, or one a pixel where points are new
+    PassSums gathered_;
     std::uint64_t passes_ = 0;
 };
 
@@ -200,8 +185,8 @@ IntegratorKind path_kind() {
             .needs =
                 [](const MethodSettings& settings) {
                     Needs needs{.direct = Needs::Direct::ByItself, .passes = Needs::Passes::Independent};
-                    if (settings.positions == Positions::Box)
-                        needs.new_points = NewPoints{.positions = Positions::Box, .all_cells = true};
+                    if (settings.positions != Positions::Grid)
+                        needs.new_points = NewPoints{.positions = settings.positions, .all_cells = true};
                     return needs;
                 },
             .settings = {"positions", "max_depth", "branch_cutoff"},

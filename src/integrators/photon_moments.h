@@ -7,10 +7,10 @@
 #include <type_traits>
 
 #include "core/math.h"
-#include "gather/gather_areas.h"
+#include "gather/areas/gather_areas.h"
 #include "gather/moments.h"
-#include "transport/hit_point_list.h"
-#include "transport/photons.h"
+#include "transport/camera/hit_point_list.h"
+#include "transport/light/photons.h"
 
 namespace photonlab {
 

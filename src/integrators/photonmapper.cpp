@@ -4,16 +4,18 @@
 //
 // Mode `radius` averages over a fixed disc: with more photons its variance vanishes and its bias stays. Mode `nearest`
 // averages over the k nearest photons: with more photons the disc and with it the bias shrink, and the variance stays
-// near 1/k. Its memory grows with the passes.
+// near 1/k. Its memory grows with the passes. Mode `relaxed` is in
+// relaxed_photon_mapping.cpp.
 //
 // [Jensen 1996, "Global Illumination using Photon Maps"; Jensen 2001, chapter 7]
 
 #include "core/parallel.h"
-#include "gather/photon_map.h"
-#include "gather/search_order.h"
+#include "gather/map/photon_map.h"
+#include "gather/map/search_order.h"
 #include "integrators/density_estimate.h"
 #include "integrators/layers.h"
 #include "integrators/registry.h"
+#include "integrators/relaxation/relaxed_photon_mapping.h"
 
 namespace photonlab {
 
@@ -29,6 +31,14 @@ struct Search {
 
     Search(const MethodSettings& settings, const IntegratorContext& context)
         : areas(context.scene, gather_area_settings(settings), context.hit_points.points.size()) {}
+
+    /// Photons found in the last gather; none where there is no such map.
+    std::uint32_t count_at(std::size_t hit_point) const { return counts.empty() ? 0 : counts[hit_point]; }
+
+    /// How close these lie within their own disc, a squared unit of the unit box.
+    double density_at(std::size_t hit_point) const {
+        return counts.empty() ? 0.0 : counts[hit_point] / (pi * radii[hit_point] * radii[hit_point]);
+    }
 
     std::uint64_t bytes() const {
         return radii.size() * sizeof(double) + counts.size() * sizeof(std::uint32_t) + areas.bytes();
@@ -89,10 +99,11 @@ public:
     }
 
     std::optional<GatherState> gather_state(std::size_t hit_point) const override {
+        const double unit = context_.scene.unit_length;
         GatherState state;
-        state.radius = global_.radii[hit_point] * context_.scene.unit_length;
-        state.photons = global_.counts[hit_point] + (caustic_.counts.empty() ? 0u : caustic_.counts[hit_point]);
-        state.density = global_.counts[hit_point] / (pi * state.radius * state.radius);
+        state.radius = global_.radii[hit_point] * unit;
+        state.photons = global_.count_at(hit_point) + caustic_.count_at(hit_point);
+        state.density = (global_.density_at(hit_point) + caustic_.density_at(hit_point)) / (unit * unit);
         state.radiance = radiance_[hit_point] * scale_;
         return state;
     }
@@ -163,11 +174,44 @@ IntegratorKind photonmapper_kind() {
     return {.name = "photonmapper",
             .label = "PM",
             .paper = "Jensen 1996, directly visualised",
-            .needs = [](const MethodSettings&) { return Needs{.photons = Needs::Photons::OfAllPasses}; },
-            .settings = {"mode", "k", "radius", "footprints", "max_radius", "caustic_k", "caustic_radius",
-                         "caustic_max_radius", "kernel", "area", "area_lines", "eps", "direct", "direct_samples",
-                         "max_depth", "branch_cutoff", "photons_per_pass"},
-            .make = make_integrator_of<PhotonMapping>};
+            .needs =
+                [](const MethodSettings& settings) {
+                    if (is_relaxed(settings))
+                        return Needs{.photons = Needs::Photons::OfPass,
+                                     .holds_photons = true,
+                                     .ordered_since = "it moves the photons that earlier passes left"};
+                    return Needs{.photons = Needs::Photons::OfAllPasses,
+                                 .ordered_since = "it gathers the photons of all passes together"};
+                },
+            .settings = {"mode",
+                         "light_sequence",
+                         "k",
+                         "radius",
+                         "footprints",
+                         "max_radius",
+                         "caustic_k",
+                         "caustic_radius",
+                         "caustic_max_radius",
+                         "relaxation_steps",
+                         "features",
+                         "kernel",
+                         "area",
+                         "area_lines",
+                         "eps",
+                         "direct",
+                         "direct_samples",
+                         "max_depth",
+                         "branch_cutoff",
+                         "photons_per_pass"},
+            .make =
+                [](const MethodSettings& settings, const IntegratorContext& context) {
+                    return is_relaxed(settings) ? make_relaxed_photon_mapping(settings, context)
+                                                : make_integrator_of<PhotonMapping>(settings, context);
+                },
+            .check =
+                [](const MethodSettings& settings, const Scene& scene) {
+                    if (is_relaxed(settings)) require_relaxable(scene, settings.max_depth);
+                }};
 }
 
 }  // namespace photonlab

@@ -3,15 +3,16 @@
 //
 // Each pass makes a density estimate of its own at every hit point, with the radius before it shrinks, and the image is
 // the running mean of these: the same numbers as the 2008 paper's shrinking flux, to rounding, and stable over millions
-// of passes (docs/theory.md, section 1; a test shows it). How the radius changes is a rule of gather/radius_rule.h.
+// of passes (docs/theory.md, section 1; a test shows it). How the radius changes is a rule of
+// gather/radii/radius_rule.h.
 //
 // [Hachisuka, Ogaki & Jensen 2008, "Progressive Photon Mapping"; Knaus & Zwicker 2011]
 
 #include <optional>
 
 #include "core/parallel.h"
-#include "gather/photon_map.h"
-#include "gather/search_order.h"
+#include "gather/map/photon_map.h"
+#include "gather/map/search_order.h"
 #include "integrators/error_estimate.h"
 #include "integrators/layers.h"
 #include "integrators/progressive.h"
@@ -29,7 +30,7 @@ public:
           order_(context.hit_points.points),
           rule_(make_radius_rule(radius_rule_settings(settings), context.hit_points.points.size())),
           areas_(context.scene, gather_area_settings(settings), context.hit_points.points.size()),
-          statistics_(context.hit_points.points.size()) {
+          statistics_(context.hit_points.points.size(), 0.0, progressive_needs(settings).can_be_joined()) {
         for (std::size_t i = 0; i < statistics_.size(); ++i) statistics_[i].squared_radius = initial_squared_radius(i);
         if (settings.estimate_error == ErrorEstimation::Off) return;
         error_.emplace(pixel_count(context.hit_points), statistics_.size());
@@ -37,9 +38,9 @@ public:
     }
 
     void take(const Pass& pass) override {
-        if (passes_ == 0) begin_at(pass);
+        set_radii(pass);
         ++passes_;
-        with_moments(wants_curvature(), rule_->wants_sectors(),
+        with_moments(wants_curvature(settings_, *rule_), rule_->wants_sectors(),
                      [&]<typename Moments>(std::type_identity<Moments>) { gather<Moments>(pass); });
         if (error_) take_pixels();
     }
@@ -47,8 +48,9 @@ public:
     MethodLayers image(const PhotonsOfAllPasses*) override {
         const HitPointList& points = context_.hit_points.points;
         const double scale = context_.scene.total_power;
-        MethodLayers layers{.gathered = to_pixels(
-                                context_.hit_points, [&](std::size_t i) { return statistics_[i].estimate; }, scale)};
+        MethodLayers layers{
+            .gathered = to_pixels(
+                context_.hit_points, [&](std::size_t i) { return statistics_.estimate(i, passes_); }, scale)};
         if (error_ && passes_ > 0)
             layers.estimated_error = error_->of_image(
                 [&](const auto& add) {
@@ -60,16 +62,17 @@ public:
 
     IntegratorReport report() const override {
         IntegratorReport report{.photons_gathered = photons_gathered_,
-                                .bytes = order_.bytes() + statistics_.size() * sizeof(GatherStatistics) +
-                                         rule_->bytes() + areas_.bytes() + of_pass_.size() * sizeof(double) +
-                                         (error_ ? error_->bytes() : 0)};
-        set_radii(
+                                .bytes = order_.bytes() + statistics_.bytes() + rule_->bytes() + areas_.bytes() +
+                                         of_pass_.size() * sizeof(double) + (error_ ? error_->bytes() : 0),
+                                .inexact_additions = statistics_.inexact_additions()};
+        photonlab::set_radii(
             report, statistics_.size(), [&](std::size_t i) { return std::sqrt(statistics_[i].squared_radius); },
             context_.scene.unit_length);
         return report;
     }
 
     AcceptingDiscs accepting_discs(const Pass& pass) override {
+        set_radii(pass);
         return discs_of_reaches(context_, settings_, pass.points.points,
                                 [&](std::size_t i, const HitPoint& point) { return reach_of(i, point, passes_ + 1); });
     }
@@ -81,14 +84,14 @@ public:
         state.photons = at.count;
         if (settings_.schedule == ScheduleName::Hachisuka)
             state.density = at.count / (pi * state.radius * state.radius);
-        state.radiance = at.estimate * context_.scene.total_power;
+        state.radiance = statistics_.estimate(hit_point, passes_) * context_.scene.total_power;
         return state;
     }
 
     void exchange(StateArchive& archive) override {
-        archive.exchange(passes_);
-        archive.exchange_as_many(statistics_);
-        archive.exchange(photons_gathered_);
+        archive.exchange_sum(passes_);
+        statistics_.exchange(archive);
+        archive.exchange_sum(photons_gathered_);
         rule_->exchange(archive);
         if (error_) error_->exchange(archive);
     }
@@ -99,14 +102,14 @@ private:
         return radius * radius;
     }
 
-    /// Sets the radii of the first pass that is taken here, which is not always the run's first.
-    void begin_at(const Pass& pass) {
-        if (pass.number > 1) {
-            const double shrink = shrink_before(*rule_, pass.number);
-            for (GatherStatistics& statistics : statistics_)
-                statistics.squared_radius = std::max(statistics.squared_radius * shrink, smallest_squared_radius);
+    /// Sets the radii of a pass where they do not follow from what earlier ones found.
+    void set_radii(const Pass& pass) {
+        if (is_blind(settings_.schedule)) {
+            const double shrink = shrink_.before(*rule_, pass.number);
+            for (std::size_t i = 0; i < statistics_.size(); ++i)
+                statistics_[i].squared_radius = std::max(initial_squared_radius(i) * shrink, smallest_squared_radius);
         }
-        if (!starts_at_nearest(settings_)) return;
+        if (passes_ > 0 || !starts_at_nearest(settings_)) return;
         parallel_for(statistics_.size(), context_.threads, [&](std::size_t i) {
             statistics_[i].squared_radius =
                 nearest_squared_radius(*pass.photons, pass.points.points[i], settings_, context_);
@@ -131,13 +134,11 @@ private:
         for (const std::uint64_t count : gathered) photons_gathered_ += count;
     }
 
-    bool wants_curvature() const { return error_ || rule_->wants_curvature(); }
-
     /// In the pass that is number `passes` of those taken here.
     GatherReach reach_of(std::size_t i, const HitPoint& point, std::uint64_t passes) {
         GatherReach reach{.radius = std::sqrt(statistics_[i].squared_radius)};
         reach.area = areas_.at(surface_end(context_.scene, point), i, reach.radius);
-        if (wants_curvature())
+        if (wants_curvature(settings_, *rule_))
             reach.bandwidth =
                 std::sqrt(squared_curvature_bandwidth(settings_.laplacian_radius, initial_squared_radius(i), passes));
         return reach;
@@ -146,25 +147,25 @@ private:
     /// One pass at one hit point.
     template <typename Moments>
     void update(std::size_t i, const PointGather<Moments>& found, const Pass& pass) {
-        GatherStatistics& statistics = statistics_[i];
-        const double area = pi * statistics.squared_radius;
+        const double squared_radius = statistics_[i].squared_radius;
+        const double area = pi * squared_radius;
         const double paths = pass.paths;
         PassGather gathered{.pass = pass.number,
                             .passes = passes_,
                             .found = static_cast<double>(found.sum.count()),
                             .estimate = found.sum.flux() / (area * paths)};
         if constexpr (Moments::are_none) {
-            take_pass(statistics, *rule_, i, gathered, smallest_squared_radius);
+            statistics_.take(i, *rule_, gathered);
         } else {
             const MomentsOfPass moments = found.moments.of_pass(found.sum.factor(), paths, 1.0);
             gathered.initial_squared_radius = initial_squared_radius(i);
             gathered.curvature = &moments.curvature;
             gathered.sectors = &moments.sectors;
             if (error_) {
-                error_->take_region(i, moments.curvature, statistics.squared_radius, passes_);
+                error_->take_region(i, moments.curvature, squared_radius, passes_);
                 of_pass_[i] = mean_channel(gathered.estimate * ColorD(pass.points.points[i].weight));
             }
-            take_pass(statistics, *rule_, i, gathered, smallest_squared_radius);
+            statistics_.take(i, *rule_, gathered);
         }
     }
 
@@ -181,10 +182,11 @@ private:
     const SearchOrder order_;
     const std::unique_ptr<RadiusRule> rule_;
     GatherAreas areas_;
-    std::uint64_t passes_ = 0;                  // taken so far, from whichever pass they began at
-    std::vector<GatherStatistics> statistics_;  // joined with the hit points by index
-    std::optional<ErrorEstimate> error_;        // where it is asked for
-    std::vector<double> of_pass_;               // what each hit point gave to its pixel in this pass, mean channel
+    std::uint64_t passes_ = 0;            // taken so far, from whichever pass they began at
+    BlindShrink shrink_;                  // of a rule that is blind
+    RegionStatistics statistics_;         // joined with the hit points by index
+    std::optional<ErrorEstimate> error_;  // where it is asked for
+    std::vector<double> of_pass_;         // what each hit point gave to its pixel in this pass, mean channel
     std::uint64_t photons_gathered_ = 0;
 };
 

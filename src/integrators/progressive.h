@@ -1,13 +1,16 @@
-// What ppm and sppm share: their settings as those of a radius rule, what they ask of a gather, and where radii begin.
+// What ppm and sppm share: their settings as those of a radius rule, what they ask of a gather, where radii begin, and
+// what regions accumulate.
 
 #pragma once
 
+#include <atomic>
 #include <cmath>
 #include <string_view>
 #include <vector>
 
-#include "gather/adaptive_radius.h"
-#include "gather/radius_rule.h"
+#include "core/exact_sum.h"
+#include "gather/radii/adaptive_radius.h"
+#include "gather/radii/radius_rule.h"
 #include "integrators/density_estimate.h"
 
 namespace photonlab {
@@ -18,28 +21,54 @@ inline constexpr double smallest_squared_radius = PhotonMap::minimum_radius * Ph
 /// What the loop has to give: passes of a blind schedule can be taken from any number on, as long as their photons do
 /// not follow from those of earlier ones.
 inline Needs progressive_needs(const MethodSettings& settings) {
-    const bool has_own_photons = emits_adaptively(settings) || traces_visible_paths(settings);
-    return {.photons = Needs::Photons::OfPass,
-            .has_own_photons = has_own_photons,
-            .passes =
-                is_blind(settings.schedule) && !has_own_photons ? Needs::Passes::Independent : Needs::Passes::Ordered};
+    Needs needs{.photons = Needs::Photons::OfPass,
+                .has_own_photons = emits_adaptively(settings) || traces_visible_paths(settings)};
+    if (!is_blind(settings.schedule))
+        needs.ordered_since = "its radii follow from what earlier passes found; those of schedule knaus-zwicker do not";
+    else if (traces_visible_paths(settings))
+        needs.ordered_since = "the chains of photon_paths visible go on from where earlier passes left them";
+    else if (settings.estimate_error == ErrorEstimation::On)
+        needs.ordered_since = "estimate_error compares each pass with the mean of those before";
+    else
+        needs.passes = emits_adaptively(settings) ? Needs::Passes::AfterLearning : Needs::Passes::Independent;
+    return needs;
+}
+
+/// Whether the curvature of the light is asked for around each hit point: by the rule of the radii, or to tell the
+/// bias.
+inline bool wants_curvature(const MethodSettings& settings, const RadiusRule& rule) {
+    return settings.estimate_error == ErrorEstimation::On || rule.wants_curvature();
 }
 
 /// The names of what both use, after those that only one has.
 inline std::vector<std::string_view> progressive_settings(std::vector<std::string_view> own = {}) {
-    for (const std::string_view name : {"photon_paths",    "step_rule",
-                                        "emission",        "learn_passes",
-                                        "schedule",        "alpha",
-                                        "kappa",           "smallest_radius",
-                                        "largest_radius",  "laplacian_radius",
-                                        "test_variant",    "start",
-                                        "test_photons",    "test_shrink",
-                                        "test_growth",     "estimate_error",
-                                        "radius",          "footprints",
-                                        "kernel",          "area",
-                                        "area_lines",      "eps",
-                                        "direct",          "direct_samples",
-                                        "max_depth",       "branch_cutoff",
+    for (const std::string_view name : {"photon_paths",
+                                        "step_rule",
+                                        "emission",
+                                        "learn_passes",
+                                        "light_sequence",
+                                        "schedule",
+                                        "alpha",
+                                        "kappa",
+                                        "smallest_radius",
+                                        "largest_radius",
+                                        "laplacian_radius",
+                                        "test_variant",
+                                        "start",
+                                        "test_photons",
+                                        "test_shrink",
+                                        "test_growth",
+                                        "estimate_error",
+                                        "radius",
+                                        "footprints",
+                                        "kernel",
+                                        "area",
+                                        "area_lines",
+                                        "eps",
+                                        "direct",
+                                        "direct_samples",
+                                        "max_depth",
+                                        "branch_cutoff",
                                         "photons_per_pass"})
         own.push_back(name);
     return own;
@@ -58,12 +87,77 @@ inline RadiusRuleSettings radius_rule_settings(const MethodSettings& settings) {
             .test_growth = settings.test_growth};
 }
 
-/// The factor that the passes before `pass` would have put on a squared radius under a blind rule.
-inline double shrink_before(const RadiusRule& rule, std::uint64_t pass) {
-    double shrink = 1.0;
-    for (std::uint64_t before = 1; before < pass; ++before) shrink *= rule.shrink_after(before);
-    return shrink;
-}
+/// What all squared radii of a pass under a blind rule have been multiplied by: one number, shrunk pass by pass from
+/// the first, whichever pass a run begins at.
+class BlindShrink {
+public:
+    double before(const RadiusRule& rule, std::uint64_t pass) {
+        if (pass < pass_) *this = {};
+        while (pass_ < pass) shrink_ *= rule.shrink_after(pass_++);
+        return shrink_;
+    }
+
+private:
+    std::uint64_t pass_ = 1;
+    double shrink_ = 1.0;
+};
+
+/// What the regions of a method accumulate. Where passes can be joined, estimates are kept as exact sums: `estimate` is
+/// then nearest to the sum over passes, and the rest is beside it.
+class RegionStatistics {
+public:
+    RegionStatistics(std::size_t regions, double squared_radius, bool can_be_joined)
+        : statistics_(regions, GatherStatistics{.squared_radius = squared_radius}),
+          rests_(can_be_joined ? regions : 0, ColorD(0.0)) {}
+
+    std::size_t size() const { return statistics_.size(); }
+    GatherStatistics& operator[](std::size_t region) { return statistics_[region]; }
+    const GatherStatistics& operator[](std::size_t region) const { return statistics_[region]; }
+
+    /// take_pass() of one region; on any thread.
+    void take(std::size_t region, RadiusRule& rule, const PassGather& gathered) {
+        GatherStatistics& at = statistics_[region];
+        if (rests_.empty()) return take_pass(at, rule, region, gathered, smallest_squared_radius);
+        if (const unsigned inexact = add_exactly(at.estimate, rests_[region], rounded_to_float_bits(gathered.estimate)))
+            std::atomic_ref(inexact_).fetch_add(inexact, std::memory_order_relaxed);
+        take_radius(at, rule, region, gathered, smallest_squared_radius);
+    }
+
+    /// Mean over so many passes of their own estimates.
+    ColorD estimate(std::size_t region, std::uint64_t passes) const {
+        const ColorD& kept = statistics_[region].estimate;
+        return rests_.empty() || passes == 0 ? kept : kept / static_cast<double>(passes);
+    }
+
+    std::uint64_t inexact_additions() const { return inexact_; }
+    std::uint64_t bytes() const {
+        return statistics_.size() * sizeof(GatherStatistics) + rests_.size() * sizeof(ColorD);
+    }
+
+    void exchange(StateArchive& archive) {
+        if (!archive.joins()) return exchange_all(archive);
+        RegionStatistics read(size(), 0.0, !rests_.empty());
+        read.exchange_all(archive);
+        inexact_ += read.inexact_;
+        for (std::size_t i = 0; i < rests_.size(); ++i) {
+            statistics_[i].squared_radius = read[i].squared_radius;
+            statistics_[i].count += read[i].count;
+            for (const ColorD& part : {read[i].estimate, read.rests_[i]})
+                inexact_ += add_exactly(statistics_[i].estimate, rests_[i], part);
+        }
+    }
+
+private:
+    void exchange_all(StateArchive& archive) {
+        archive.exchange_as_many(statistics_);
+        archive.exchange_as_many(rests_);
+        archive.exchange(inexact_);
+    }
+
+    std::vector<GatherStatistics> statistics_;
+    std::vector<ColorD> rests_;  // what the estimates are short of; none where they are running means
+    std::uint64_t inexact_ = 0;
+};
 
 /// The discs of a pass, for Integrator::accepting_discs(): `reach_of(index, point)` is what its gather asks for.
 template <typename ReachOf>

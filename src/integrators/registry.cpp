@@ -7,7 +7,7 @@
 #include "core/text/nearest.h"
 #include "integrators/density_estimate.h"
 #include "integrators/integrator_list.h"
-#include "integrators/settings_table.h"
+#include "integrators/settings/settings_table.h"
 
 namespace photonlab {
 
@@ -62,7 +62,11 @@ void require_valid(const MethodSettings& settings) {
     require_all_in_range(settings);
 }
 
-void require_resolvable(const MethodSettings& settings, const Scene& scene) {
+void require_renderable(const MethodSettings& settings, const Scene& scene) {
+    require_renderable(find_integrator_kind(settings.integrator), settings, scene);
+}
+
+void require_renderable(const IntegratorKind& kind, const MethodSettings& settings, const Scene& scene) {
     for (const SettingField& field : setting_fields()) {
         if (field.type != SettingField::Type::Length) continue;
         const SettingValue value = field.get(settings);
@@ -73,6 +77,7 @@ void require_resolvable(const MethodSettings& settings, const Scene& scene) {
                 fmt::format("{}: expected from {:g} to {:g} of the scene, which is {:g} scene units large, got {:g}",
                             field.name, smallest_initial_radius, largest_length, scene.unit_length, *length));
     }
+    if (kind.check) kind.check(settings, scene);
 }
 
 std::uint64_t count_raised_radii(const MethodSettings& settings, const HitPoints& hit_points) {
@@ -98,7 +103,7 @@ std::optional<std::string> note_of_raised_radii(const MethodSettings& settings, 
 std::unique_ptr<Integrator> make_integrator(const IntegratorKind& kind, const MethodSettings& settings,
                                             const IntegratorContext& context) {
     require_all_in_range(settings);
-    require_resolvable(settings, context.scene);
+    require_renderable(kind, settings, context.scene);
     return kind.make(settings, context);
 }
 

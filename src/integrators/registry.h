@@ -22,6 +22,7 @@ struct IntegratorKind {
     Needs (*needs)(const MethodSettings&);
     std::vector<std::string_view> settings;  ///< fields of MethodSettings that it uses, by their names
     std::unique_ptr<Integrator> (*make)(const MethodSettings&, const IntegratorContext&);
+    void (*check)(const MethodSettings&, const Scene&) = nullptr;  ///< throws InputError for what it cannot hold
 };
 
 const std::vector<IntegratorKind>& integrator_kinds();
@@ -49,9 +50,10 @@ std::vector<std::string_view> users_of(std::string_view field);
 /// Throws InputError when a value is out of its range.
 void require_valid(const MethodSettings& settings);
 
-/// Throws InputError when a length is out of what float32 geometry can resolve in the scene: the image would merely be
-/// wrong.
-void require_resolvable(const MethodSettings& settings, const Scene& scene);
+/// Throws InputError when the image would merely be wrong: a length is out of what float32 geometry can resolve in the
+/// scene, or the scene has light that the method cannot hold.
+void require_renderable(const MethodSettings& settings, const Scene& scene);
+void require_renderable(const IntegratorKind& kind, const MethodSettings& settings, const Scene& scene);
 
 /// At how many hit points the radius from `footprints` is smaller than the scene's floats resolve and is raised to what
 /// they do: there the image is coarser than its pixels.

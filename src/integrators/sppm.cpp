@@ -14,9 +14,10 @@
 #include <optional>
 
 #include "core/parallel.h"
-#include "gather/photon_map.h"
-#include "gather/search_order.h"
+#include "gather/map/photon_map.h"
+#include "gather/map/search_order.h"
 #include "integrators/error_estimate.h"
+#include "integrators/findable_light.h"
 #include "integrators/layers.h"
 #include "integrators/progressive.h"
 #include "integrators/registry.h"
@@ -33,25 +34,28 @@ public:
           pixels_(pixel_count(context.hit_points)),
           rule_(make_radius_rule(radius_rule_settings(settings), pixels_)),
           areas_(context.scene, gather_area_settings(settings), 0),
-          statistics_(pixels_, GatherStatistics{.squared_radius = 1.0}) {
+          statistics_(pixels_, 1.0, progressive_needs(settings).can_be_joined()) {
         if (settings.estimate_error == ErrorEstimation::On) error_.emplace(pixels_, pixels_);
-        set_radii(context.hit_points);
+        note_radii(context.hit_points);
+        if (goes_on_somewhere())
+            require_findable_light(context.scene, settings.max_depth, "cannot be rendered with glossy continue",
+                                   "its caustics would be missing on glossy surfaces; use glossy gather");
     }
 
     void take(const Pass& pass) override {
-        if (passes_ == 0) begin_at(pass);
+        set_radii(pass);
         ++passes_;
-        with_moments(wants_curvature(), rule_->wants_sectors(),
+        with_moments(wants_curvature(settings_, *rule_), rule_->wants_sectors(),
                      [&]<typename Moments>(std::type_identity<Moments>) { gather<Moments>(pass); });
-        set_radii(pass.points);
+        note_radii(pass.points);
     }
 
     MethodLayers image(const PhotonsOfAllPasses*) override {
         const double scale = context_.scene.total_power;
         MethodLayers layers;
         layers.gathered.reserve(pixels_);
-        for (const GatherStatistics& statistics : statistics_)
-            layers.gathered.push_back(Color(statistics.estimate * scale));
+        for (std::size_t pixel = 0; pixel < pixels_; ++pixel)
+            layers.gathered.push_back(Color(statistics_.estimate(pixel, passes_) * scale));
         if (error_ && passes_ > 0)
             layers.estimated_error = error_->of_image(
                 [&](const auto& add) {
@@ -65,11 +69,13 @@ public:
     IntegratorReport report() const override {
         IntegratorReport report = radii_;
         report.photons_gathered = photons_gathered_;
-        report.bytes = pixels_ * sizeof(GatherStatistics) + rule_->bytes() + (error_ ? error_->bytes() : 0);
+        report.bytes = statistics_.bytes() + rule_->bytes() + (error_ ? error_->bytes() : 0);
+        report.inexact_additions = statistics_.inexact_additions();
         return report;
     }
 
     AcceptingDiscs accepting_discs(const Pass& pass) override {
+        set_radii(pass);
         return discs_of_reaches(context_, settings_, pass.points.points, [&](std::size_t i, const HitPoint& point) {
             return reach_of(pass, i, point, passes_ + 1);
         });
@@ -77,25 +83,38 @@ public:
 
     /// Of the pixel that the hit point is in; the radius is that which this point would have.
     std::optional<GatherState> gather_state(std::size_t hit_point) const override {
-        const GatherStatistics& at = statistics_[context_.hit_points.points[hit_point].pixel];
+        const std::uint32_t pixel = context_.hit_points.points[hit_point].pixel;
+        const GatherStatistics& at = statistics_[pixel];
         GatherState state;
         state.radius =
             initial_radius(settings_, context_, hit_point) * std::sqrt(at.squared_radius) * context_.scene.unit_length;
         state.photons = at.count;
-        state.radiance = at.estimate * context_.scene.total_power;
+        state.radiance = statistics_.estimate(pixel, passes_) * context_.scene.total_power;
         return state;
     }
 
     void exchange(StateArchive& archive) override {
-        archive.exchange(passes_);
-        archive.exchange_as_many(statistics_);
-        archive.exchange(photons_gathered_);
+        archive.exchange_sum(passes_);
+        statistics_.exchange(archive);
+        archive.exchange_sum(photons_gathered_);
         archive.exchange(radii_);
         rule_->exchange(archive);
         if (error_) error_->exchange(archive);
     }
 
 private:
+    bool goes_on_somewhere() const {
+        if (settings_.glossy != GlossyMode::Continue) return false;
+        const auto goes_on = [&](const Material& material) {
+            const std::optional<float> alpha = roughness(material.bsdf);
+            return alpha && (static_cast<double>(*alpha) < settings_.gather_roughness || !material.textures.empty());
+        };
+        return std::any_of(context_.scene.shapes.begin(), context_.scene.shapes.end(), [&](const Shape& shape) {
+            const Material& material = context_.scene.materials[shape.material];
+            return goes_on(material) || (material.back && goes_on(*material.back));
+        });
+    }
+
     /// Unit box; before any shrinking.
     double initial_radius_at(const HitPoints& points, std::size_t i) const {
         return initial_radius(settings_, context_.scene, points, i);
@@ -106,18 +125,20 @@ private:
         return initial_radius_at(points, i) * std::sqrt(statistics_[pixel].squared_radius);
     }
 
-    void set_radii(const HitPoints& points) {
+    /// For the report.
+    void note_radii(const HitPoints& points) {
         photonlab::set_radii(
             radii_, points.points.size(), [&](std::size_t i) { return radius_at(points, i, points.points[i].pixel); },
             context_.scene.unit_length);
     }
 
-    void begin_at(const Pass& pass) {
-        if (pass.number > 1) {
-            const double shrink = shrink_before(*rule_, pass.number);
-            for (GatherStatistics& statistics : statistics_) statistics.squared_radius *= shrink;
+    /// Sets the radii of a pass where they do not follow from what earlier ones found.
+    void set_radii(const Pass& pass) {
+        if (is_blind(settings_.schedule)) {
+            const double shrink = shrink_.before(*rule_, pass.number);
+            for (std::size_t pixel = 0; pixel < pixels_; ++pixel) statistics_[pixel].squared_radius = shrink;
         }
-        if (!starts_at_nearest(settings_)) return;
+        if (passes_ > 0 || !starts_at_nearest(settings_)) return;
         std::vector<bool> has_begun(pixels_, false);
         for (std::size_t i = 0; i < pass.points.points.size(); ++i) {
             const HitPoint point = pass.points.points[i];
@@ -173,13 +194,11 @@ private:
         return std::max(radius_at(points, i, pixel), PhotonMap::minimum_radius);
     }
 
-    bool wants_curvature() const { return error_ || rule_->wants_curvature(); }
-
     /// In the pass that is number `passes` of those taken here.
     GatherReach reach_of(const Pass& pass, std::size_t i, const HitPoint& point, std::uint64_t passes) const {
         GatherReach reach{.radius = gather_radius_at(pass.points, i, point.pixel)};
         reach.area = areas_.of_pass(surface_end(context_.scene, point), i, pass.number, reach.radius);
-        if (wants_curvature()) {
+        if (wants_curvature(settings_, *rule_)) {
             const double unit = initial_radius_at(pass.points, i);
             reach.bandwidth = std::sqrt(squared_curvature_bandwidth(settings_.laplacian_radius, unit * unit, passes));
         }
@@ -189,7 +208,6 @@ private:
     void take_pixels(const Pass& pass, std::vector<PassGather>& of_pixels, const std::vector<MomentsOfPass>& moments) {
         for (std::size_t pixel = 0; pixel < pixels_; ++pixel) {
             PassGather& gathered = of_pixels[pixel];
-            GatherStatistics& statistics = statistics_[pixel];
             gathered.pass = pass.number;
             gathered.passes = passes_;
             if (!moments.empty()) {
@@ -197,10 +215,10 @@ private:
                 gathered.sectors = &moments[pixel].sectors;
             }
             if (error_) {
-                error_->take_region(pixel, moments[pixel].curvature, statistics.squared_radius, passes_);
+                error_->take_region(pixel, moments[pixel].curvature, statistics_[pixel].squared_radius, passes_);
                 error_->take_pixel(pixel, mean_channel(gathered.estimate), passes_);
             }
-            take_pass(statistics, *rule_, pixel, gathered, smallest_squared_radius);
+            statistics_.take(pixel, *rule_, gathered);
         }
     }
 
@@ -209,10 +227,11 @@ private:
     const std::size_t pixels_;
     const std::unique_ptr<RadiusRule> rule_;
     const GatherAreas areas_;
-    std::uint64_t passes_ = 0;                  // taken so far, from whichever pass they began at
-    std::vector<GatherStatistics> statistics_;  // one a pixel; squared radii in shares of each hit point's initial one
-    std::optional<ErrorEstimate> error_;        // where it is asked for
-    IntegratorReport radii_;                    // of which only the radii are set
+    std::uint64_t passes_ = 0;            // taken so far, from whichever pass they began at
+    BlindShrink shrink_;                  // of a rule that is blind
+    RegionStatistics statistics_;         // one a pixel; squared radii in shares of each hit point's initial one
+    std::optional<ErrorEstimate> error_;  // where it is asked for
+    IntegratorReport radii_;              // of which only the radii are set
     std::uint64_t photons_gathered_ = 0;
 };
 
@@ -226,9 +245,11 @@ IntegratorKind sppm_kind() {
                 [](const MethodSettings& settings) {
                     Needs needs = progressive_needs(settings);
                     needs.new_points = NewPoints{.positions = settings.positions, .branches = settings.branches};
+                    if (settings.glossy == GlossyMode::Continue)
+                        needs.new_points->gather_roughness = settings.gather_roughness;
                     return needs;
                 },
-            .settings = progressive_settings({"positions", "branches"}),
+            .settings = progressive_settings({"positions", "branches", "glossy", "gather_roughness"}),
             .make = make_integrator_of<StochasticProgressivePhotonMapping>};
 }
 

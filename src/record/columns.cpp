@@ -5,8 +5,8 @@
 #include "core/files/files.h"
 #include "core/files/kept_files.h"
 #include "core/text/csv.h"
-#include "integrators/chosen_settings.h"
 #include "integrators/registry.h"
+#include "integrators/settings/chosen_settings.h"
 
 namespace photonlab {
 
@@ -158,7 +158,11 @@ std::vector<Column> columns_of_image() {
         {"threads", Kind::Identity, Type::Integer, "", "threads", "results do not depend on it, to the bit",
          [](const Record& r) { return number(r.identity.settings.threads); }},
         {"pass", Kind::Identity, Type::Integer, "", "pass", "passes done",
-         [](const Record& r) { return number(r.state.pass); }},
+         [](const Record& r) { return number(count_passes(r.state.ranges)); }},
+        {"ranges", Kind::Identity, Type::Text, "", "ranges of passes",
+         "of a run whose passes were taken in parts: which they are, a range a part; empty for passes from the first "
+         "on",
+         [](const Record& r) { return describe(r.state.ranges); }},
         {"component", Kind::Identity, Type::Text, "", "component", "`total`, `emission`, `direct` or `gathered`",
          [](const Record& r) { return std::string(r.component); }},
     };
@@ -227,6 +231,7 @@ std::vector<Column> columns_of_times() {
             "is divided between build and direct in proportion to the CPU time of each"),
         column_of_stage<Stage::Points>("points",
                                        "of `seconds`: new hit points, where a method makes them in every pass"),
+        column_of_stage<Stage::Relax>("relax", "of `seconds`: photons of mode relaxed, moved and given their flux"),
     };
 }
 

@@ -24,7 +24,7 @@
 
 #include "core/files/json.h"
 #include "image/metrics.h"
-#include "record/estimated_error.h"
+#include "record/images/estimated_error.h"
 #include "render/pass_loop.h"
 
 namespace photonlab {

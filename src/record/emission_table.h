@@ -1,12 +1,12 @@
-// What emission that learns has learnt, as a table: a row a cell of a light's square (transport/emission_map.h). It is
-// what the figure of it is drawn from, and with seed and settings all that later passes need.
+// What emission that learns has learnt, as a table: a row a cell of a light's square (transport/light/emission_map.h).
+// It is what the figure of it is drawn from, and with seed and settings all that later passes need.
 
 #pragma once
 
 #include <string>
 
 #include "scene/scene.h"
-#include "transport/emission_map.h"
+#include "transport/light/emission_map.h"
 
 namespace photonlab {
 

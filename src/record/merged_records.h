@@ -48,8 +48,9 @@ struct MergedRecords {
 };
 
 /// Merges the runs that are finished. What it merges it checks: a run that is not what it was when it finished is left
-/// out, and named. Others that are finished and left out are counted. Writes nothing where nothing has changed. For
-/// whoever holds the folder's lock, beside processes that make runs.
+/// out, and named. Others that are finished and left out are counted. One pass over the folder, in which every file is
+/// opened once and no more than a run is in memory. Writes nothing where nothing has changed. For whoever holds the
+/// folder's lock, beside processes that make runs.
 MergedRecords merge_records(const std::string& experiment, const std::filesystem::path& results,
                             const std::vector<RunToMerge>& runs);
 

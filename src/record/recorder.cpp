@@ -82,7 +82,7 @@ std::uint64_t Recorder::count_nonfinite(const RunState& state, const Image& imag
         const auto width = static_cast<std::size_t>(image.width);
         if (first_nonfinite_.size() < most_listed_pixels)
             first_nonfinite_.push_back(
-                {state.pass, component, static_cast<int>(i % width), static_cast<int>(i / width)});
+                {count_passes(state.ranges), component, static_cast<int>(i % width), static_cast<int>(i / width)});
     }
     return count;
 }

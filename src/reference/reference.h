@@ -13,7 +13,7 @@
 #include "core/files/json.h"
 #include "image/image.h"
 #include "image/metrics.h"
-#include "transport/camera_pass.h"
+#include "transport/camera/camera_pass.h"
 
 namespace photonlab {
 

@@ -10,9 +10,9 @@
 #include <numeric>
 
 #include "core/parallel.h"
-#include "gather/photon_map.h"
+#include "gather/map/photon_map.h"
 #include "integrators/density_estimate.h"
-#include "transport/photons.h"
+#include "transport/light/photons.h"
 
 namespace photonlab {
 
@@ -125,12 +125,12 @@ std::uint64_t photons_a_pass(std::uint64_t reference_paths, std::size_t hit_poin
 }
 
 /// One pass: radiance times pixels, summed over hit points, by compared light, within r and within r/2.
-struct PassSums {
+struct LayerSums {
     std::array<double, lights> within_radius{};
     std::array<double, lights> within_half{};
     std::array<std::uint64_t, lights> photons{};  // within r/2
 
-    PassSums& operator+=(const PassSums& other) {
+    LayerSums& operator+=(const LayerSums& other) {
         for (std::size_t light = 0; light < lights; ++light) {
             within_radius[light] += other.within_radius[light];
             within_half[light] += other.within_half[light];
@@ -174,10 +174,10 @@ public:
 
     double mean_radius() const { return mean_of(radii_) * scene_.unit_length; }
 
-    PassSums gather(const PhotonMap& map, std::uint64_t pass) {
+    LayerSums gather(const PhotonMap& map, std::uint64_t pass) {
         const std::size_t first = pass % stride_;
         const std::size_t count = (radii_.size() - first + stride_ - 1) / stride_;
-        std::vector<PassSums> sums(block_count(count, hit_points_per_block));
+        std::vector<LayerSums> sums(block_count(count, hit_points_per_block));
         parallel_for(sums.size(), threads_, [&](std::size_t block) {
             const BlockRange range = block_range(block, count, hit_points_per_block);
             std::vector<GatherQuery> queries;
@@ -194,8 +194,8 @@ public:
             for (std::size_t i = range.begin; i < range.end; ++i)
                 sums[block] += sums_at(first + i * stride_, found[i - range.begin], pass);
         });
-        PassSums sum;
-        for (const PassSums& block : sums) sum += block;
+        LayerSums sum;
+        for (const LayerSums& block : sums) sum += block;
         for (std::size_t light = 0; light < lights; ++light) {
             sum.within_radius[light] *= static_cast<double>(stride_);
             sum.within_half[light] *= static_cast<double>(stride_);
@@ -203,7 +203,7 @@ public:
         return sum;
     }
 
-    /// Root of the sum over hit points of their squared changes, in units of PassSums a pass. Even and odd passes are
+    /// Root of the sum over hit points of their squared changes, in units of LayerSums a pass. Even and odd passes are
     /// multiplied, so that their noise is not taken for changes.
     double change_scatter(std::size_t light) const {
         double sum = 0.0;
@@ -213,9 +213,9 @@ public:
     }
 
 private:
-    PassSums sums_at(std::size_t index, const PointSums& found, std::uint64_t pass) {
+    LayerSums sums_at(std::size_t index, const PointSums& found, std::uint64_t pass) {
         const ColorD scale = ColorD(hit_points_.points[index].weight) / (pi * radii_[index] * radii_[index]);
-        PassSums sums;
+        LayerSums sums;
         for (std::size_t light = 0; light < lights; ++light) {
             sums.within_radius[light] = mean_channel(found.within_radius[light].flux() * scale);
             sums.within_half[light] = mean_channel(found.within_half[light].flux() * scale) * 4.0;
@@ -274,7 +274,7 @@ std::optional<LightByPhotons> measure_light_by_photons(const Scene& scene, const
     for (std::uint64_t pass = 1; pass <= passes; ++pass) {
         if (settings.is_interrupted()) return std::nullopt;
         const PhotonMap map(trace_photons(scene, photon_settings, pass, settings.threads).photons);
-        const PassSums sums = gather.gather(map, pass);
+        const LayerSums sums = gather.gather(map, pass);
         for (std::size_t light = 0; light < lights; ++light) {
             within_radius[light].push_back(sums.within_radius[light] * scale);
             within_half[light].push_back(sums.within_half[light] * scale);

@@ -30,7 +30,7 @@
 #include "core/files/json.h"
 #include "image/image.h"
 #include "scene/scene.h"
-#include "transport/camera_pass.h"
+#include "transport/camera/camera_pass.h"
 
 namespace photonlab {
 

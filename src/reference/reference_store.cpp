@@ -24,7 +24,7 @@ namespace photonlab {
 namespace {
 
 constexpr std::uintmax_t largest_json = std::uintmax_t{1} << 24;  // bytes
-constexpr std::string_view halves[] = {"half_a", "half_b"};
+constexpr std::string_view half_names[] = {"half_a", "half_b"};
 constexpr std::string_view key_attribute = "photonlab.key";
 constexpr std::string_view seed_attribute = "photonlab.seed";
 constexpr std::string_view samples_attribute = "photonlab.samples";
@@ -36,10 +36,10 @@ struct HalfPurposes {
     LoopPurposes purposes;
 };
 
-constexpr HalfPurposes half_purposes[] = {{halves[0],
+constexpr HalfPurposes half_purposes[] = {{half_names[0],
                                            {RandomPurpose::ReferenceHalfA, RandomPurpose::ReferencePhotonsA,
                                             RandomPurpose::ReferenceDirectA, RandomPurpose::ReferencePositionsA}},
-                                          {halves[1],
+                                          {half_names[1],
                                            {RandomPurpose::ReferenceHalfB, RandomPurpose::ReferencePhotonsB,
                                             RandomPurpose::ReferenceDirectB, RandomPurpose::ReferencePositionsB}}};
 
@@ -50,11 +50,16 @@ std::string describe_method(const MethodSettings& method) {
                        method.footprints, method.photons_per_pass);
 }
 
-MethodSettings method_of(const ReferenceSettings& settings) {
+}  // namespace
+
+MethodSettings reference_method(const ReferenceSettings& settings) {
     if (settings.integrator != "path" && settings.integrator != "ppm")
         throw InputError(
             fmt::format("integrator: expected path or ppm for a reference, got \"{}\"", settings.integrator));
     MethodSettings method;
+    if (settings.positions != limit_of(settings.positions))
+        throw InputError(
+            fmt::format("positions: expected grid or box, to which {} converges", name_of(settings.positions)));
     if (settings.positions == Positions::Box && settings.integrator != "path")
         throw InputError("positions: box is known to references made by path alone");
     method.integrator = settings.integrator;
@@ -68,6 +73,8 @@ MethodSettings method_of(const ReferenceSettings& settings) {
     require_valid(method);
     return method;
 }
+
+namespace {
 
 std::filesystem::path half_file(const std::filesystem::path& folder, std::string_view half) {
     return folder / (std::string(half) + ".exr");
@@ -111,10 +118,22 @@ std::uint64_t samples_to_continue(const std::filesystem::path& file, const Metad
 /// Refuses a folder of something else before anything is written into it.
 void require_own_reference(const std::filesystem::path& folder, const std::string& key, const RunSettings& settings) {
     stored_seconds(folder);
-    for (const std::string_view half : halves) {
+    for (const std::string_view half : half_names) {
         const std::filesystem::path file = half_file(folder, half);
         if (is_there(file)) samples_to_continue(file, read_exr_metadata(file), key, settings);
     }
+}
+
+/// Replaces the file of a half; returns its checksum.
+std::string save_half(const std::filesystem::path& file, const Image& image, const std::string& key,
+                      const RunSettings& settings, std::uint64_t samples) {
+    write_exr(file, image,
+              {{std::string(key_attribute), key},
+               {std::string(seed_attribute), std::to_string(settings.seed)},
+               {std::string(method_attribute), describe_method(settings.method)},
+               {std::string(samples_attribute), std::to_string(samples)}},
+              ExrCompression::Small);
+    return hash_file(file);
 }
 
 /// One half while samples are added: what was there, and an integrator that makes what is new.
@@ -122,15 +141,11 @@ class GrowingHalf {
 public:
     GrowingHalf(std::filesystem::path file, const std::string& key, const Scene& scene, const HitPoints& hit_points,
                 const RunSettings& settings, const LoopPurposes& purposes)
-        : file_(std::move(file)),
-          key_(key),
-          seed_(settings.seed),
-          method_(settings.method),
-          loop_(scene, hit_points, {settings}, purposes) {
+        : file_(std::move(file)), loop_(scene, hit_points, {settings}, purposes) {
         if (!is_there(file_)) return;
         Metadata metadata;
         stored_ = read_exr(file_, &metadata);
-        stored_samples_ = samples_to_continue(file_, metadata, key_, settings);
+        stored_samples_ = samples_to_continue(file_, metadata, key, settings);
         if (!stored_.find(gathered_layer))
             throw InputError(file_.string(), "holds the picture without its layers; nothing can be added to it");
     }
@@ -156,22 +171,8 @@ public:
         return image;
     }
 
-    /// Replaces the file; returns its checksum.
-    std::string save(const Image& image) const {
-        write_exr(file_, image,
-                  {{std::string(key_attribute), key_},
-                   {std::string(seed_attribute), std::to_string(seed_)},
-                   {std::string(method_attribute), describe_method(method_)},
-                   {std::string(samples_attribute), std::to_string(samples())}},
-                  ExrCompression::Small);
-        return hash_file(file_);
-    }
-
 private:
     const std::filesystem::path file_;
-    const std::string key_;
-    const std::uint64_t seed_;
-    const MethodSettings method_;
     PassLoop loop_;
     Image stored_;
     std::uint64_t stored_samples_ = 0;
@@ -223,14 +224,14 @@ ReferenceSubject subject_of(const Scene& scene, const ReferenceSettings& setting
 
 FileLock lock_reference(const std::filesystem::path& folder) {
     auto lock = FileLock::try_lock(folder / "lock");
-    if (!lock) throw InputError(folder.string(), "another process is adding samples to this reference");
+    if (!lock) throw HeldElsewhere(folder.string(), "another process is adding samples to this reference");
     return std::move(*lock);
 }
 
 /// The part of reference.json that says what it is a reference of, and how it is made.
 Json subject_json(const Scene& scene, const ReferenceSettings& settings) {
     const ReferenceSubject subject = subject_of(scene, settings);
-    const MethodSettings method = method_of(settings);
+    const MethodSettings method = reference_method(settings);
     return {{"schema", 1},
             {"key", reference_key(subject)},
             {"reference_version", reference_version},
@@ -252,13 +253,71 @@ void set_check(Json& json, const Json& check) {
         json["estimate"] = check.at("verdict") == "disputed" ? "unbiased, but disputed" : "unbiased";
 }
 
+/// The halves of a reference as they are written.
+struct Halves {
+    Image a;
+    Image b;
+    std::uint64_t samples = 0;  ///< in each
+    double seconds = 0.0;       ///< that they took
+};
+
+/// Writes the halves and reference.json, last; returns what that says. `picture_only`: ReferenceSettings's.
+Json write_reference(const Scene& scene, const ReferenceSettings& settings, const std::filesystem::path& folder,
+                     Halves halves, const std::variant<LightByPhotons, std::string>& photons, bool picture_only) {
+    const std::string key = reference_key(subject_of(scene, settings));
+    const RunSettings run{.method = reference_method(settings), .seed = settings.seed};
+    const Json check = check_of(photons, halves.a, halves.b);
+    if (picture_only) {
+        halves.a = picture_of(halves.a);
+        halves.b = picture_of(halves.b);
+    }
+    const auto save = [&](std::string_view half, const Image& image) {
+        return save_half(half_file(folder, half), image, key, run, halves.samples);
+    };
+    const std::string checksum_a = save(half_names[0], halves.a);
+    const std::string checksum_b = save(half_names[1], halves.b);
+    Json json = subject_json(scene, settings);
+    json["samples_per_half"] = halves.samples;
+    json["seconds"] = halves.seconds;
+    json["floor_mse"] = noise_floor(halves.a, halves.b);
+    set_check(json, check);
+    json["checksums"] = {{"half_a", checksum_a}, {"half_b", checksum_b}};
+    const ProgramVersion program = program_version();
+    json["program"] = {{"version", program.version}, {"commit", program.commit}};
+    write_text_file(folder / "reference.json", json_text(json) + "\n");
+    return json;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point then) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
+}
+
+/// The loops of both halves, that make a part or join several.
+struct HalfLoops {
+    PassLoop a;
+    PassLoop b;
+    double seconds = 0.0;  // that the samples took
+
+    HalfLoops(const Scene& scene, const HitPoints& hit_points, const RunSettings& run)
+        : a(scene, hit_points, {run}, half_purposes[0].purposes),
+          b(scene, hit_points, {run}, half_purposes[1].purposes) {}
+
+    std::uint64_t last() const { return b.state(0).pass; }
+
+    void exchange(StateArchive& archive) {
+        a.exchange(0, archive);
+        b.exchange(0, archive);
+        archive.exchange_sum(seconds);
+    }
+};
+
 }  // namespace
 
 Json add_reference_samples(const Scene& scene, const ReferenceSettings& settings, const std::filesystem::path& folder,
                            const SampleListener& on_sample) {
     require_perfect_square(settings.samples_per_pixel);
     const std::string key = reference_key(subject_of(scene, settings));
-    const MethodSettings method = method_of(settings);
+    const MethodSettings method = reference_method(settings);
     const RunSettings run{.method = method, .seed = settings.seed, .threads = settings.threads};
     require_own_reference(folder, key, run);
     require_memory(folder.string(), MemoryEstimator(scene, settings.samples_per_pixel).of({run, run}, 0));
@@ -279,25 +338,9 @@ Json add_reference_samples(const Scene& scene, const ReferenceSettings& settings
 
     Json json;
     const auto save = [&](bool picture_only) {
-        Image image_a = half_a.mean();
-        Image image_b = half_b.mean();
-        const Json check = check_of(photons, image_a, image_b);
-        if (picture_only) {
-            image_a = picture_of(image_a);
-            image_b = picture_of(image_b);
-        }
-        const std::string checksum_a = half_a.save(image_a);
-        const std::string checksum_b = half_b.save(image_b);
-        json = subject_json(scene, settings);
-        json["samples_per_half"] = half_a.samples();
-        json["seconds"] =
-            seconds_before + std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-        json["floor_mse"] = noise_floor(image_a, image_b);
-        set_check(json, check);
-        json["checksums"] = {{"half_a", checksum_a}, {"half_b", checksum_b}};
-        const ProgramVersion program = program_version();
-        json["program"] = {{"version", program.version}, {"commit", program.commit}};
-        write_text_file(folder / "reference.json", json_text(json) + "\n");
+        json = write_reference(scene, settings, folder,
+                               {half_a.mean(), half_b.mean(), half_a.samples(), seconds_before + seconds_since(began)},
+                               photons, picture_only);
     };
 
     const std::uint64_t before = half_a.samples() + half_b.samples();
@@ -319,6 +362,66 @@ Json add_reference_samples(const Scene& scene, const ReferenceSettings& settings
     }
     save(settings.picture_only && !is_interrupted);
     return json;
+}
+
+bool make_reference_part(const Scene& scene, const ReferenceSettings& settings, const PassRange& passes,
+                         const Checkpoint& checkpoint, const SampleListener& on_sample) {
+    require_perfect_square(settings.samples_per_pixel);
+    const RunSettings run{.method = reference_method(settings), .seed = settings.seed, .threads = settings.threads};
+    require_memory(checkpoint.file.string(), MemoryEstimator(scene, settings.samples_per_pixel).of({run, run}, 0));
+    require_writable(checkpoint.file);
+    const auto lock = FileLock::try_lock(checkpoint.file.string() + ".lock");
+    if (!lock) throw HeldElsewhere(checkpoint.file.string(), "another process is making these samples");
+
+    const HitPoints hit_points = trace_hit_points(scene, settings.samples_per_pixel, settings.threads);
+    HalfLoops halves(scene, hit_points, run);
+    const StateExchange state = [&](StateArchive& archive) { halves.exchange(archive); };
+    const std::uint64_t before = load(checkpoint, state) ? halves.last() : passes.first - 1;
+    const double seconds_before = halves.seconds;
+    const auto began = std::chrono::steady_clock::now();
+    CheckpointClock clock(settings.seconds_between_saves);
+    bool is_interrupted = false;
+    for (std::uint64_t pass = before + 1; pass <= passes.last && !is_interrupted; ++pass) {
+        halves.a.take(pass);
+        halves.b.take(pass);
+        halves.seconds = seconds_before + seconds_since(began);
+        on_sample(2 * (pass - passes.first + 1), 2 * passes.count());
+        is_interrupted = pass < passes.last && settings.is_interrupted();
+        if (pass < passes.last && !is_interrupted && !clock.is_due_after_pass()) continue;
+        save(checkpoint, state);
+        clock.saved();
+    }
+    return !is_interrupted;
+}
+
+Json join_reference_parts(const Scene& scene, const ReferenceSettings& settings,
+                          const std::vector<ReferencePart>& parts, const std::filesystem::path& folder) {
+    const RunSettings run{.method = reference_method(settings), .seed = settings.seed, .threads = settings.threads};
+    require_own_reference(folder, reference_key(subject_of(scene, settings)), run);
+    require_memory(folder.string(), MemoryEstimator(scene, settings.samples_per_pixel).of({run, run}, 0));
+    require_writable(folder / "reference.json");
+    const FileLock lock = lock_reference(folder);
+    const std::uint64_t samples = parts.back().passes.last;
+    if (is_there(folder / "reference.json"))
+        if (const auto there = read_reference_json(folder).at("samples_per_half").get<std::uint64_t>(); there > samples)
+            throw InputError(folder.string(), fmt::format("holds {} samples a half, and these parts {}: join them into "
+                                                          "another folder",
+                                                          there, samples));
+
+    const HitPoints hit_points = trace_hit_points(scene, settings.samples_per_pixel, settings.threads);
+    HalfLoops halves(scene, hit_points, run);
+    for (const auto& [checkpoint, passes] : parts) {
+        load(checkpoint, [&](StateArchive& archive) {
+            if (halves.last() > 0) archive.begin_joining();
+            halves.exchange(archive);
+        });
+        if (halves.last() != passes.last)
+            throw InputError(checkpoint.file.string(),
+                             fmt::format("has samples up to {} of {}; the same command makes the others", halves.last(),
+                                         describe(passes)));
+    }
+    return write_reference(scene, settings, folder, {halves.a.image(), halves.b.image(), samples, halves.seconds},
+                           ask_photons(scene, hit_points, settings, 2 * samples * hit_points.points.size()), false);
 }
 
 Json compare_reference_with_photons(const Scene& scene, const ReferenceSettings& settings,
@@ -383,7 +486,7 @@ Json read_reference_json(const std::filesystem::path& folder) {
         if (json.contains("check"))
             for (const char* name : {"verdict", "why"}) json.at("check").at(name).get<std::string>();
         if (json.contains("seconds")) require_not_negative(json.at("seconds"), "seconds");
-        for (const std::string_view half : halves) json.at("checksums").at(std::string(half)).get<std::string>();
+        for (const std::string_view half : half_names) json.at("checksums").at(std::string(half)).get<std::string>();
     } catch (const Json::exception& error) {
         throw InputError(file.string(), std::string("this is no reference: ") + error.what());
     }

@@ -8,7 +8,9 @@
 //                               (reference_check.h), and the halves' checksums
 //
 // Each half is replaced whole and knows its own number of samples, so an interruption between the two loses nothing:
-// the next call brings the lagging half up first. reference.json is written last; where its checksums are not the
+// the next call brings the lagging half up first. Many nodes make one reference by a range of its samples each: a part
+// is a file of its own beside the halves with the exact sums of both, and parts that are joined are, to the bit, the
+// halves that one process makes. reference.json is written last; where its checksums are not the
 // halves', nothing is judged by them until then.
 
 #pragma once
@@ -18,11 +20,14 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/files/json.h"
 #include "image/image.h"
+#include "integrators/settings/settings.h"
 #include "reference/reference.h"
 #include "render/checkpoint.h"
+#include "render/pass_range.h"
 #include "scene/scene.h"
 
 namespace photonlab {
@@ -54,6 +59,25 @@ using SampleListener = std::function<void(std::uint64_t done, std::uint64_t tota
 Json add_reference_samples(
     const Scene& scene, const ReferenceSettings& settings, const std::filesystem::path& folder,
     const SampleListener& on_sample = [](std::uint64_t, std::uint64_t) {});
+
+/// How its samples are made.
+MethodSettings reference_method(const ReferenceSettings& settings);
+
+/// Makes samples `passes` of both halves, counted from 1, into `checkpoint`, from which it goes on where that is there
+/// already. `on_sample` as above. False when it was interrupted, and saved.
+bool make_reference_part(const Scene& scene, const ReferenceSettings& settings, const PassRange& passes,
+                         const Checkpoint& checkpoint, const SampleListener& on_sample);
+
+/// A file that it made.
+struct ReferencePart {
+    Checkpoint checkpoint;
+    PassRange passes;
+};
+
+/// Makes the reference of the samples in the parts, which are those from the first on, in order. Throws InputError when
+/// the folder holds a reference of something else, or one of more samples. Returns what reference.json now says.
+Json join_reference_parts(const Scene& scene, const ReferenceSettings& settings,
+                          const std::vector<ReferencePart>& parts, const std::filesystem::path& folder);
 
 /// Compares what is in `folder` with photons once more, and adds nothing: reference.json alone is written anew, with
 /// the same key. Returns what it now says.

@@ -45,14 +45,8 @@ std::uint64_t checked_size(std::istream& stream, const std::string& place, const
     return size;
 }
 
-}  // namespace
-
-void load_checkpoint(std::istream& stream, const std::string& place, const Checkpoint& checkpoint,
-                     const StateExchange& state) {
-    const std::uint64_t size = checked_size(stream, place, checkpoint);
-    stream.clear();
-    stream.seekg(signature.size());
-    StateArchive archive(stream, size - signature.size());
+/// What stands before the state.
+std::string read_start(StateArchive& archive, const std::string& place, const Checkpoint& checkpoint) {
     std::uint32_t stored_format = 0;
     std::string identity;
     try {
@@ -66,7 +60,23 @@ void load_checkpoint(std::istream& stream, const std::string& place, const Check
                       "is of format " + std::to_string(stored_format) + ", and this program reads " +
                           std::to_string(checkpoint_format),
                       checkpoint);
-    if (identity != checkpoint.identity)
+    return identity;
+}
+
+/// Of the bytes between signature and checksum, which are looked at first.
+StateArchive checked_archive(std::istream& stream, const std::string& place, const Checkpoint& checkpoint) {
+    const std::uint64_t size = checked_size(stream, place, checkpoint);
+    stream.clear();
+    stream.seekg(signature.size());
+    return StateArchive(stream, size - signature.size());
+}
+
+}  // namespace
+
+void load_checkpoint(std::istream& stream, const std::string& place, const Checkpoint& checkpoint,
+                     const StateExchange& state) {
+    StateArchive archive = checked_archive(stream, place, checkpoint);
+    if (read_start(archive, place, checkpoint) != checkpoint.identity)
         throw refusal(
             place, "is of another run: its settings, scene, reference, passes or the program's version were different",
             checkpoint);
@@ -93,6 +103,14 @@ bool load(const Checkpoint& checkpoint, const StateExchange& state) {
     if (!stream) throw refusal(checkpoint.file.string(), "cannot be read as a checkpoint", checkpoint);
     load_checkpoint(stream, checkpoint.file.string(), checkpoint, state);
     return true;
+}
+
+std::string read_identity(const std::filesystem::path& file) {
+    require_ordinary_file(file);
+    std::ifstream stream(file, std::ios::binary);
+    const Checkpoint nobodys;
+    StateArchive archive = checked_archive(stream, file.string(), nobodys);
+    return read_start(archive, file.string(), nobodys);
 }
 
 bool is_usable(const Checkpoint& checkpoint) {

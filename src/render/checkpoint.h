@@ -17,7 +17,7 @@
 
 namespace photonlab {
 
-inline constexpr std::uint32_t checkpoint_format = 4;          ///< to be raised when a state's exchange() changes
+inline constexpr std::uint32_t checkpoint_format = 6;          ///< to be raised when a state's exchange() changes
 inline constexpr double default_seconds_between_saves = 30.0;  ///< of all long work
 
 /// Where a run keeps its state.
@@ -36,6 +36,9 @@ bool load(const Checkpoint& checkpoint, const StateExchange& state);
 
 /// load() without reading the state itself.
 bool is_usable(const Checkpoint& checkpoint);
+
+/// Whose state is in the file. Throws InputError where it is no checkpoint, damaged or of another format.
+std::string read_identity(const std::filesystem::path& file);
 
 /// Throws InputError unless it is a checkpoint, whosever, as it was written.
 void require_whole_checkpoint(const std::filesystem::path& file);

@@ -42,8 +42,8 @@ std::vector<Color> rounded(const std::vector<ColorD>& pixels) {
     return {pixels.begin(), pixels.end()};
 }
 
-void add(std::vector<ColorD>& sums, const std::vector<Color>& values) {
-    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += ColorD(values[i]);
+void add(PassSums& sums, const std::vector<Color>& values) {
+    for (std::size_t i = 0; i < sums.size(); ++i) sums.add(i, ColorD(values[i]));
 }
 
 }  // namespace
@@ -51,10 +51,11 @@ void add(std::vector<ColorD>& sums, const std::vector<Color>& values) {
 LoopLayers::LoopLayers(const Scene& scene, const HitPoints& hit_points, const LoopLayerSettings& settings)
     : scene_(scene), grid_(hit_points), settings_(settings) {
     if (settings_.has_new_points) {
-        direct_pixels_.assign(pixel_count(grid_), ColorD(0.0));
-        emission_pixels_.assign(pixel_count(grid_), ColorD(0.0));
+        direct_pixels_ = PassSums(pixel_count(grid_), settings_.has_exact_sums);
+        emission_pixels_ = PassSums(pixel_count(grid_), settings_.has_exact_sums);
+        if (settings_.goes_on) gathered_pixels_ = PassSums(pixel_count(grid_), settings_.has_exact_sums);
     } else if (settings_.direct_samples > 0) {
-        direct_sums_.assign(grid_.points.size(), ColorD(0.0));
+        direct_sums_ = PassSums(grid_.points.size(), settings_.has_exact_sums);
     }
 }
 
@@ -62,8 +63,9 @@ std::size_t LoopLayers::blocks(const HitPoints& points) const {
     return settings_.direct_samples == 0 ? 0 : block_count(points.points.size(), hit_points_per_block);
 }
 
-void LoopLayers::add_samples(const HitPoints& hit_points, std::uint64_t pass, std::size_t block,
-                             std::vector<ColorD>& sums) const {
+/// `add(index, light)` of each hit point of the block.
+template <typename Add>
+void LoopLayers::add_samples(const HitPoints& hit_points, std::uint64_t pass, std::size_t block, const Add& add) const {
     const HitPointList& points = hit_points.points;
     const BlockRange range = block_range(block, points.size(), hit_points_per_block);
     std::array<ColorD, hit_points_per_block> sum_of;
@@ -82,7 +84,7 @@ void LoopLayers::add_samples(const HitPoints& hit_points, std::uint64_t pass, st
     }
     waiting.trace(scene_);
     for (std::size_t i = range.begin; i < range.end; ++i)
-        sums[i] += sum_of[i - range.begin] / static_cast<double>(settings_.direct_samples);
+        add(i, sum_of[i - range.begin] / static_cast<double>(settings_.direct_samples));
 }
 
 std::size_t LoopLayers::begin_pass(std::uint64_t pass, const HitPoints& points) {
@@ -90,29 +92,50 @@ std::size_t LoopLayers::begin_pass(std::uint64_t pass, const HitPoints& points) 
     points_ = &points;
     ++passes_;
     if (settings_.has_new_points && settings_.direct_samples > 0)
-        direct_sums_.assign(points.points.size(), ColorD(0.0));
+        direct_of_pass_.assign(points.points.size(), ColorD(0.0));
     return blocks(points);
 }
 
 void LoopLayers::add_block(std::size_t block) {
-    add_samples(*points_, begun_, block, direct_sums_);
+    if (settings_.has_new_points)
+        add_samples(*points_, begun_, block, [&](std::size_t i, const ColorD& light) { direct_of_pass_[i] = light; });
+    else
+        add_samples(*points_, begun_, block, [&](std::size_t i, const ColorD& light) { direct_sums_.add(i, light); });
 }
 
 void LoopLayers::end_pass() {
     if (settings_.has_new_points) {
         add(emission_pixels_, rounded(emission_image(*points_, settings_.max_depth)));
-        if (settings_.direct_samples > 0)
-            add(direct_pixels_, to_pixels(
-                                    *points_, [&](std::size_t i) { return direct_sums_[i]; }, 1.0));
-        direct_sums_.clear();
+        if (settings_.direct_samples > 0) add_sampled(false, direct_pixels_);
+        if (settings_.goes_on) add_seen();
+        direct_of_pass_.clear();
     }
     points_ = nullptr;
 }
 
-std::vector<Color> LoopLayers::mean(const std::vector<ColorD>& pixel_sums) const {
+/// What shadow rays brought to hit points that are, or are not, behind a glossy surface.
+void LoopLayers::add_sampled(bool after_glossy, PassSums& pixel_sums) const {
+    const auto sampled_at = [&](std::size_t i) {
+        const bool is_of_these = !settings_.goes_on || points_->points[i].is_after_glossy == after_glossy;
+        return is_of_these ? direct_of_pass_[i] : ColorD(0.0);
+    };
+    add(pixel_sums, to_pixels(*points_, sampled_at, 1.0));
+}
+
+/// What camera paths that went on from glossy surfaces found.
+void LoopLayers::add_seen() {
+    const bool samples = settings_.direct_samples > 0;
+    const auto seen = [&](SeenLayer layer) { return rounded(seen_image(*points_, settings_.max_depth, layer)); };
+    add(samples ? direct_pixels_ : gathered_pixels_, seen(SeenLayer::Direct));
+    add(gathered_pixels_, seen(SeenLayer::Gathered));
+    if (samples) add_sampled(true, gathered_pixels_);
+}
+
+std::vector<Color> LoopLayers::mean(const PassSums& pixel_sums) const {
     std::vector<Color> pixels;
     pixels.reserve(pixel_sums.size());
-    for (const ColorD& sum : pixel_sums) pixels.push_back(Color(sum * (1.0 / static_cast<double>(passes_))));
+    for (std::size_t i = 0; i < pixel_sums.size(); ++i)
+        pixels.push_back(Color(pixel_sums[i] * (1.0 / static_cast<double>(passes_))));
     return pixels;
 }
 
@@ -128,20 +151,33 @@ std::vector<Color> LoopLayers::direct() const {
         return to_pixels(
             grid_, [&](std::size_t i) { return direct_sums_[i]; }, 1.0 / static_cast<double>(passes_));
     std::vector<ColorD> once(grid_.points.size(), ColorD(0.0));
-    parallel_for(blocks(grid_), settings_.threads, [&](std::size_t block) { add_samples(grid_, 0, block, once); });
+    parallel_for(blocks(grid_), settings_.threads, [&](std::size_t block) {
+        add_samples(grid_, 0, block, [&](std::size_t i, const ColorD& light) { once[i] = light; });
+    });
     return to_pixels(
         grid_, [&](std::size_t i) { return once[i]; }, 1.0);
 }
 
+std::vector<Color> LoopLayers::gathered() const {
+    return passes_ > 0 && settings_.goes_on ? mean(gathered_pixels_) : std::vector<Color>{};
+}
+
 void LoopLayers::exchange(StateArchive& archive) {
-    archive.exchange(passes_);
-    archive.exchange_as_many(direct_sums_);
-    archive.exchange_as_many(direct_pixels_);
-    archive.exchange_as_many(emission_pixels_);
+    archive.exchange_sum(passes_);
+    direct_sums_.exchange(archive);
+    direct_pixels_.exchange(archive);
+    emission_pixels_.exchange(archive);
+    gathered_pixels_.exchange(archive);
+}
+
+std::uint64_t LoopLayers::inexact_additions() const {
+    return direct_sums_.inexact_additions() + direct_pixels_.inexact_additions() +
+           emission_pixels_.inexact_additions() + gathered_pixels_.inexact_additions();
 }
 
 std::uint64_t LoopLayers::bytes() const {
-    return (direct_sums_.capacity() + direct_pixels_.size() + emission_pixels_.size()) * sizeof(ColorD);
+    return direct_of_pass_.capacity() * sizeof(ColorD) + direct_sums_.bytes() + direct_pixels_.bytes() +
+           emission_pixels_.bytes() + gathered_pixels_.bytes();
 }
 
 }  // namespace photonlab

@@ -15,6 +15,7 @@
 #include "image/image.h"
 #include "integrators/registry.h"
 #include "render/loop_layers.h"
+#include "render/pass_range.h"
 #include "render/photon_source.h"
 #include "render/photon_supply.h"
 #include "render/stage_clock.h"
@@ -25,14 +26,18 @@ namespace photonlab {
 struct RunSettings {
     MethodSettings method;  ///< with max_depth resolved
     std::uint64_t seed = 1;
-    std::uint64_t passes = 1;
+    std::uint64_t passes = 1;  ///< the last one
     int threads = 1;
     std::vector<std::uint64_t> shown = {};  ///< passes whose image is asked for, increasing, at most `passes`
+    bool shows_counts = false;              ///< images have Image::count and Image::density
+    std::uint64_t first_pass = 1;           ///< of independent passes
+    std::optional<EmissionMap> learnt = std::nullopt;  ///< PassLoop::freeze_emission()
 };
 
-/// How far a run is: after `pass` passes.
+/// How far a run is.
 struct RunState {
-    std::uint64_t pass = 0;
+    std::uint64_t pass = 0;            ///< the last that was taken
+    std::vector<PassRange> ranges;     ///< that were taken; where states were joined, in the order of these
     std::uint64_t paths_emitted = 0;   ///< from lights, over all passes; 0 for `path`
     std::uint64_t paths_traced = 0;    ///< to find photons for these
     std::optional<double> paths_seen;  ///< share of the last pass's emitted paths with a photon that was accepted;
@@ -64,6 +69,9 @@ struct LoopPurposes {
 /// True when both trace the same photons in the same passes, gather at the same hit points, and are looked at after the
 /// same passes.
 bool can_run_together(const RunSettings& a, const RunSettings& b);
+
+/// The photons that a run traces in each pass, of plain emission.
+PhotonSettings photon_settings(const RunSettings& settings, RandomPurpose purpose = RandomPurpose::PhotonPaths);
 
 class PassLoop {
 public:
@@ -104,7 +112,7 @@ public:
     void freeze_emission(const EmissionMap& learnt);
 
     /// Writes or reads what the passes so far left of a method, but for the photons: those of all passes are traced
-    /// again.
+    /// again. Of a method whose passes can be joined, also to join other passes to those that were taken.
     void exchange(std::size_t method, StateArchive& archive);
 
 private:
@@ -114,7 +122,8 @@ private:
         Needs needs;
         LoopLayers layers;
         RunState state;
-        StageTimes passes_alone;  // without images
+        bool shows_counts = false;
+        StageTimes passes_alone = {};  // without images
     };
 
     bool is_due(const Method& method, std::uint64_t pass) const;
@@ -130,13 +139,12 @@ private:
     void describe(const Method& method, RunState& state) const;
     StageTimes begin_images(const std::vector<std::size_t>& which);
     Image image(std::size_t method, const StageTimes& indexing);
-    std::vector<float> radii_of(const Integrator& integrator) const;  // Image::radius
+    void add_gather_states(const Method& method, Image& image) const;
 
     const Scene& scene_;
     const HitPoints& hit_points_;
     PhotonSource source_;
     const double branch_cutoff_;
-    const bool has_blind_radii_;
     const int threads_;
     std::vector<Method> methods_;
     PhotonSupply photons_;

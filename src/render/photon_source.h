@@ -9,9 +9,9 @@
 #include <span>
 
 #include "integrators/integrator.h"
-#include "transport/emission_map.h"
-#include "transport/photons.h"
-#include "transport/visible_paths.h"
+#include "transport/light/emission_map.h"
+#include "transport/light/photons.h"
+#include "transport/light/visible_paths.h"
 
 namespace photonlab {
 

@@ -11,9 +11,9 @@
 #include <span>
 #include <vector>
 
-#include "gather/photon_map.h"
+#include "gather/map/photon_map.h"
 #include "integrators/integrator.h"
-#include "transport/photons.h"
+#include "transport/light/photons.h"
 
 namespace photonlab {
 

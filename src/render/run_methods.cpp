@@ -43,8 +43,8 @@ std::vector<RunState> run_methods(const Scene& scene, const HitPoints& hit_point
         });
     };
 
-    if (is_shown(0)) show_images(methods_at(loop, first_shown, 0), 0);
-    for (std::uint64_t pass = 1; pass <= settings[0].passes; ++pass) {
+    if (is_shown(0) && settings[0].first_pass == 1) show_images(methods_at(loop, first_shown, 0), 0);
+    for (std::uint64_t pass = settings[0].first_pass; pass <= settings[0].passes; ++pass) {
         loop.take(pass);
         const std::vector<std::size_t> methods = methods_at(loop, first_shown, pass);
         for (const std::size_t method : methods) tell(pass, method, Needs::Photons::OfPass);

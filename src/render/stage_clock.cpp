@@ -16,10 +16,6 @@ double cpu_seconds(clockid_t clock) {
     return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-double process_cpu_seconds() {
-    return cpu_seconds(CLOCK_PROCESS_CPUTIME_ID);
-}
-
 }  // namespace
 
 double steady_seconds() {
@@ -28,6 +24,10 @@ double steady_seconds() {
 
 double thread_cpu_seconds() {
     return cpu_seconds(CLOCK_THREAD_CPUTIME_ID);
+}
+
+double process_cpu_seconds() {
+    return cpu_seconds(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 double StageTimes::total() const {
@@ -67,6 +67,9 @@ StageTimes times_alone(const OverlappedWork& work, std::size_t method) {
     const double all_cpu = std::accumulate(work.direct_cpu.begin(), work.direct_cpu.end(), work.build_cpu);
     StageTimes times;
     if (!(own_cpu > 0.0)) return times;
+    // Beside methods with much direct light to sample, threads come late or never to take part in sorting, which they
+    // would have done sooner for this one alone: it is charged too much, at most what they would have taken off
+    // sorting, half of it with two threads. How long sorting took, and on which threads, is not measured.
     const double seconds = std::max(work.build_seconds, work.seconds * (own_cpu / all_cpu));
     const auto build = static_cast<std::size_t>(Stage::Build);
     const auto direct = static_cast<std::size_t>(Stage::Direct);

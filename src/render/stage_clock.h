@@ -20,8 +20,9 @@ enum class Stage {
     Gather,  ///< what methods do with them
     Direct,  ///< shadow rays
     Points,  ///< the camera pass of methods with new hit points in every pass
+    Relax,   ///< moving photons that a method holds, and giving them their flux
 };
-inline constexpr std::size_t stage_count = 5;
+inline constexpr std::size_t stage_count = 6;
 
 /// Seconds spent in each Stage, by the steady clock and of the CPU (all threads of the process).
 struct StageTimes {
@@ -58,7 +59,7 @@ StageTimes timed(Stage stage, const Step& step) {
     return clock.times();
 }
 
-/// The photons of a pass indexed on one thread, while the others sample direct light at the hit points of every method.
+/// The photons of a pass indexed, while other threads sample direct light at the hit points of every method.
 struct OverlappedWork {
     double seconds = 0.0;            ///< from the first of it to the last
     double build_seconds = 0.0;      ///< of indexing
@@ -72,5 +73,6 @@ StageTimes times_alone(const OverlappedWork& work, std::size_t method);
 
 double steady_seconds();      ///< since some fixed moment
 double thread_cpu_seconds();  ///< of the calling thread
+double process_cpu_seconds();
 
 }  // namespace photonlab

@@ -1,11 +1,12 @@
-// What Embree is told: buffers for meshes, callbacks for all other shapes. The callbacks compute in double, since a
-// float32 quadratic loses a sphere seen from far away, and round only the distance that Embree compares.
+// What Embree is told: the buffers of meshes, which it reads where they are, and callbacks for all other shapes. The
+// callbacks compute in double, since a float32 quadratic loses a sphere seen from far away, and round only the distance
+// that Embree compares.
 
 #include "scene/embree_scene.h"
 
 #include <fmt/format.h>
 
-#include <cstring>
+#include <cassert>
 #include <new>
 #include <stdexcept>
 
@@ -92,15 +93,12 @@ RTCDevice shared_device() {
 RTCGeometry make_mesh(RTCDevice device, const TriangleMesh& mesh) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     if (mesh.triangles.empty()) return geometry;  // Embree has no empty buffers
-    const std::size_t position_bytes = mesh.positions.size() * sizeof(Vector);
-    const std::size_t triangle_bytes = mesh.triangles.size() * sizeof(mesh.triangles[0]);
-    void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vector),
-                                              mesh.positions.size());
-    void* triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                              sizeof(mesh.triangles[0]), mesh.triangles.size());
+    assert(mesh.positions.capacity() > mesh.positions.size());
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(), 0,
+                               sizeof(Vector), mesh.positions.size());
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
+                               sizeof(mesh.triangles[0]), mesh.triangles.size());
     require_success(device);
-    std::memcpy(positions, mesh.positions.data(), position_bytes);
-    std::memcpy(triangles, mesh.triangles.data(), triangle_bytes);
     return geometry;
 }
 
@@ -114,7 +112,7 @@ RTCGeometry make_analytic(RTCDevice device, Analytic& shape) {
     return geometry;
 }
 
-/// What Embree takes, as measured of a million triangles: its own copies of the meshes, and its tree.
+/// What Embree takes at most, as measured of a million triangles: its tree, and what it needs to build it.
 std::uint64_t bytes_in_embree(const std::vector<Shape>& shapes) {
     constexpr std::uint64_t bytes_of_triangle = 100;
     std::uint64_t bytes = 0;

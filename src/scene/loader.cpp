@@ -13,7 +13,6 @@
 #include <set>
 
 #include "core/error.h"
-#include "core/hash.h"
 #include "core/text/nearest.h"
 #include "core/text/text.h"
 #include "scene/emitters/light_reader.h"
@@ -29,7 +28,7 @@ namespace {
 
 class Loader {
 public:
-    Loader(SceneDescription& scene, const std::filesystem::path& folder, std::string& bytes_read)
+    Loader(SceneDescription& scene, const std::filesystem::path& folder, BytesRead& bytes_read)
         : scene_(scene), folder_(folder.string() + "/"), bytes_read_(bytes_read) {}
 
     void load(const XmlElement& root) {
@@ -195,7 +194,20 @@ private:
         reader.has_bsdf = bsdf != nullptr;
         reader.has_texture = needs_texture_coordinates(scene_.materials[shape.material]);
         shape.geometry = read_geometry(reader);
+        if (scene_.materials[shape.material].is_anisotropic) require_directions(shape.geometry, reader);
         scene_.shapes.push_back(std::move(shape));
+    }
+
+    /// Of a shape whose material's roughness depends on the direction.
+    void require_directions(const Geometry& geometry, const ShapeReader& reader) {
+        const auto* mesh = std::get_if<MeshDescription>(&geometry);
+        if (!mesh || !mesh->texture_coordinates.empty()) return;
+        const std::string what = fmt::format(
+            "{}: its material's roughness depends on the direction, and a mesh without texture coordinates has none",
+            reader.element.attribute("type"));
+        if (reader.is_version_06()) throw InputError(reader.element.place, what);
+        reader.source.note(
+            fmt::format("{}: {}: as in Mitsuba 3 any is taken, triangle by triangle", reader.element.place, what));
     }
 
     /// 0.6 gives an OBJ file's parts the bsdfs that bear the names of their materials there.
@@ -409,13 +421,13 @@ private:
 
     SceneDescription& scene_;
     const std::string folder_;  // of the scene, as it stands before names of files
-    std::string& bytes_read_;
+    BytesRead& bytes_read_;
     std::set<std::string> noted_;  // scene_.notes
     double near_clip_ = 1e-2;      // of the camera
     double far_clip_ = 1e4;
     std::size_t image_pixels_ = 0;
     std::map<std::string, std::shared_ptr<const ColorImage>> images_;
-    std::map<std::array<double, 3>, std::shared_ptr<const RoughCoat>> rough_coats_;
+    std::map<std::array<double, 4>, std::shared_ptr<const RoughCoats>> rough_coats_;
     std::map<std::string, const XmlElement*> by_id_;
     std::map<const XmlElement*, std::size_t> materials_;
     std::optional<std::size_t> default_material_;
@@ -428,15 +440,15 @@ private:
 SceneDescription load_scene_file(const std::filesystem::path& file,
                                  const std::map<std::string, std::string>& parameters) {
     SceneDescription scene;
-    std::string bytes_read;
+    BytesRead bytes_read;
     const XmlElement root = read_scene_xml(file, parameters, bytes_read);
     for (const auto& [name, value] : parameters) {
-        bytes_read += fmt::format("\n{}={}", name, value);
+        bytes_read.add(fmt::format("\n{}={}", name, value));
         scene.notes.push_back(valid_text(fmt::format("${} is \"{}\", as was asked for", name, value.substr(0, 200))));
     }
     Loader(scene, file.parent_path(), bytes_read).load(root);
 
-    scene.hash = hash_text(bytes_read);
+    scene.hash = bytes_read.hash.text();
     const std::filesystem::path absolute = std::filesystem::absolute(file);
     scene.name = file.filename() == "scene.xml" ? absolute.parent_path().filename().string() : file.stem().string();
     return scene;

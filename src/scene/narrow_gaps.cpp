@@ -31,8 +31,9 @@ std::optional<NarrowGap> gap_at(const Scene& scene, const Probe& probe) {
     constexpr float height = 0.99f * narrowest_gap;  // gaps of exactly that width are safe
     for (const float side : {1.0f, -1.0f}) {
         const Vector away = probe.normal * side;
-        const std::optional<Hit> hit = intersect(scene, {probe.position + away * height, -away});
-        if (!hit || hit->distance > 1.02f * height) continue;  // lost at an edge
+        const std::optional<Hit> hit =
+            intersect_between(scene, {probe.position + away * height, -away}, 0.0f, 1.02f * height);
+        if (!hit) continue;  // lost at an edge
         const bool is_itself = hit->shape == probe.shape && hit->primitive == probe.primitive;
         if (!is_itself || hit->distance < 0.9f * height) return NarrowGap{probe.shape, hit->shape, probe.position};
     }

@@ -62,27 +62,6 @@ double coarseness_of(const Bounds& box, double size) {
 constexpr double noted_coarseness = 1e-6;  // tens of times that of the floats in the unit box
 constexpr double worst_coarseness = 1e-4;  // light a thirtieth of the scene above a floor is then off by 0.1%
 
-/// The box that becomes the unit box. A point light's intensity is divided by the square of its size, which must
-/// therefore be a double too.
-ToUnitBox make_unit_box(const Bounds& box, const std::string& place) {
-    if (box.is_empty()) return {VectorD(0.0), 1.0};
-    const VectorD extent = box.upper - box.lower;
-    const double largest = std::max({extent.x, extent.y, extent.z});
-    const VectorD centre = (box.lower + box.upper) * 0.5;
-    const double unit_length = largest > 0.0 ? largest : 1.0;
-    if (!is_finite(centre) || !std::isnormal(unit_length * unit_length))
-        throw InputError(
-            place, fmt::format("the scene is {} scene units large around ({} {} {}): beyond double precision", largest,
-                               centre.x, centre.y, centre.z));
-    if (coarseness_of(box, unit_length) > worst_coarseness)
-        throw InputError(
-            place,
-            fmt::format("the scene is {:g} scene units large around ({:g} {:g} {:g}), where neighbouring doubles "
-                        "are {:.2g} of its size apart; expected at most {:g}: move it closer to the origin",
-                        largest, centre.x, centre.y, centre.z, coarseness_of(box, unit_length), worst_coarseness));
-    return {centre, unit_length};
-}
-
 /// Where the shape stands that reaches farthest from the origin, or the first light where there is no shape.
 std::string place_of_farthest(const SceneDescription& description) {
     std::string place = description.lights.empty() ? description.name : place_of(description.lights.front());
@@ -95,6 +74,27 @@ std::string place_of_farthest(const SceneDescription& description) {
         place = shape.place;
     }
     return place;
+}
+
+/// The box that becomes the unit box. A point light's intensity is divided by the square of its size, which must
+/// therefore be a double too.
+ToUnitBox make_unit_box(const Bounds& box, const SceneDescription& description) {
+    if (box.is_empty()) return {VectorD(0.0), 1.0};
+    const VectorD extent = box.upper - box.lower;
+    const double largest = std::max({extent.x, extent.y, extent.z});
+    const VectorD centre = (box.lower + box.upper) * 0.5;
+    const double unit_length = largest > 0.0 ? largest : 1.0;
+    if (!is_finite(centre) || !std::isnormal(unit_length * unit_length))
+        throw InputError(place_of_farthest(description),
+                         fmt::format("the scene is {} scene units large around ({} {} {}): beyond double precision",
+                                     largest, centre.x, centre.y, centre.z));
+    if (coarseness_of(box, unit_length) > worst_coarseness)
+        throw InputError(
+            place_of_farthest(description),
+            fmt::format("the scene is {:g} scene units large around ({:g} {:g} {:g}), where neighbouring doubles "
+                        "are {:.2g} of its size apart; expected at most {:g}: move it closer to the origin",
+                        largest, centre.x, centre.y, centre.z, coarseness_of(box, unit_length), worst_coarseness));
+    return {centre, unit_length};
 }
 
 Camera make_camera(const CameraDescription& description, std::optional<Resolution> resolution,
@@ -310,6 +310,25 @@ Vector turned_normal(const Shape& shape, const Hit& hit, const NormalTexture& no
     return normals.is_mirrored ? mirrored_opposite(unit, hit.shading_normal) : unit;
 }
 
+Frame frame_along_u(const Scene& scene, const Hit& hit, const Vector& normal, bool from_back) {
+    const Shape& shape = scene.shapes[hit.shape];
+    const Material& material = scene.materials[shape.material];
+    const std::optional<NormalTexture>& normals = from_back ? material.normals_behind : material.normals;
+    const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
+    // Without texture coordinates Mitsuba 3 has any direction, made from the normal as make_frame() does.
+    const VectorD by_u = mesh && mesh->texture_coordinates.empty() ? VectorD(make_frame(hit.geometric_normal).tangent)
+                                                                   : tangents_at(shape, hit).by_u;
+    const VectorD unturned(hit.shading_normal);
+    const VectorD turned(normal);
+    const VectorD along = by_u - unturned * unturned.dot(by_u);
+    // A bumped surface's p_u is that of the surface, moved along its normal: it lies above `along`.
+    const VectorD tangent = normals && normals->is_height
+                                ? along - unturned * (along.dot(turned) / unturned.dot(turned))
+                                : along - turned * turned.dot(along);
+    if (!is_finite(tangent) || tangent.length2() == 0.0) return make_frame(normal);
+    return frame_with_tangent(normal, Vector(tangent.normalized()));
+}
+
 std::optional<Surface> passed_straight(const Scene& scene, const Hit& hit, const Vector& outgoing) {
     const std::uint32_t material = scene.shapes[hit.shape].material;
     const float geometric = hit.geometric_normal.dot(outgoing);
@@ -343,7 +362,7 @@ Ray Camera::ray(double x, double y, const Imath::V2f& on_lens) const {
     return {Vector(VectorD(position) + offset), Vector((through * focus_distance - offset).normalized())};
 }
 
-Scene build_scene(const SceneDescription& description, std::optional<Resolution> resolution) {
+Scene build_scene(SceneDescription description, std::optional<Resolution> resolution) {
     require_valid(description);
     Bounds all;
     for (const ShapeDescription& shape : description.shapes) include(all, bounds_of(shape.geometry));
@@ -352,7 +371,7 @@ Scene build_scene(const SceneDescription& description, std::optional<Resolution>
     if (box.is_empty())
         for (const LightDescription& light : description.lights) include(box, bounds_of(light));
 
-    const ToUnitBox to_unit_box = make_unit_box(box, place_of_farthest(description));
+    const ToUnitBox to_unit_box = make_unit_box(box, description);
 
     Scene scene;
     scene.name = description.name;
@@ -374,12 +393,14 @@ Scene build_scene(const SceneDescription& description, std::optional<Resolution>
             "infinity are made for the latter",
             size_of(all), size_of(bounds)));
     if (!bounds.is_empty()) scene.bounding_radius = to_unit_box.length(0.5 * (bounds.upper - bounds.lower).length());
-    for (const ShapeDescription& shape : description.shapes) {
-        scene.shapes.push_back(
-            place_shape(shape.geometry, to_unit_box,
-                        {.emits = shape.radiance.has_value(),
-                         .has_texture = needs_texture_coordinates(scene.materials[shape.material])}));
+    scene.shapes.reserve(description.shapes.size());
+    for (ShapeDescription& shape : description.shapes) {
+        scene.shapes.push_back(place_shape(shape.geometry, to_unit_box,
+                                           {.emits = shape.radiance.has_value(),
+                                            .has_texture = needs_texture_coordinates(scene.materials[shape.material]) ||
+                                                           scene.materials[shape.material].is_anisotropic}));
         scene.shapes.back().material = static_cast<std::uint32_t>(shape.material);
+        shape.geometry = Geometry();
     }
     add_emitters(scene, description, extent_of(to_unit_box, bounds, all));
     scene.camera = make_camera(description.camera, resolution, to_unit_box);

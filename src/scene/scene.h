@@ -71,9 +71,10 @@ struct Resolution {
     int height;
 };
 
-/// Moves, scales and indexes. Throws InputError for what cannot be rendered: non-finite vertices, reflectance
-/// outside [0, 1], a radius or field of view out of range, a resolution below 1 x 1.
-Scene build_scene(const SceneDescription& description, std::optional<Resolution> resolution = std::nullopt);
+/// Moves, scales and indexes, and forgets each shape's description as soon as it is placed. Throws InputError for what
+/// cannot be rendered: non-finite vertices, reflectance outside [0, 1], a radius or field of view out of range, a
+/// resolution below 1 x 1.
+Scene build_scene(SceneDescription description, std::optional<Resolution> resolution = std::nullopt);
 
 /// First surface along the ray, or nothing.
 std::optional<Hit> intersect(const Scene& scene, const Ray& ray);
@@ -109,6 +110,10 @@ struct Surface {
 /// is not mirrored.
 Vector turned_normal(const Shape& shape, const Hit& hit, const NormalTexture& normals);
 
+/// The frame around a unit `normal`, of the side that is seen, in which an anisotropic material is at home: its tangent
+/// is along the surface's u, on a bumped surface along that surface's.
+Frame frame_along_u(const Scene& scene, const Hit& hit, const Vector& normal, bool from_back);
+
 /// What orient() gives where shading and geometric normal disagree about the side of `outgoing`: light goes straight on
 /// there as through a hole, where the material has any, and else nowhere.
 std::optional<Surface> passed_straight(const Scene& scene, const Hit& hit, const Vector& outgoing);
@@ -129,7 +134,8 @@ inline std::optional<Surface> orient_by(const Scene& scene, const Hit& hit, cons
     const float side = from_back ? -1.0f : 1.0f;
     surface->material = material_index;
     surface->texture_coordinate = hit.texture_coordinate;
-    surface->frame = make_frame(shading_normal * side);
+    const Vector normal = shading_normal * side;
+    surface->frame = material.is_anisotropic ? frame_along_u(scene, hit, normal, from_back) : make_frame(normal);
     surface->geometric_normal = hit.geometric_normal * side;
     surface->position = hit.position;
     surface->from_back = from_back;

@@ -4,6 +4,19 @@
 
 namespace photonlab {
 
+namespace {
+
+/// Density per steradian with which draw_connection() finds the light that a ray from `position` met; `hit` is empty
+/// where it left the scene.
+double connection_density(const Scene& scene, const Vector& position, const Vector& direction,
+                          const std::optional<Hit>& hit) {
+    const std::uint32_t light = hit ? scene.shapes[hit->shape].emitter : *scene.environment;
+    const double density = hit ? direct_density(scene, position, direction, *hit) : escaped_density(scene, direction);
+    return scene.emitters[light].choice_probability * density;
+}
+
+}  // namespace
+
 std::optional<LightConnection> draw_connection(const Scene& scene, const Surface& surface, const Vector& outgoing,
                                                RandomStream& random) {
     if (scene.emitters.empty()) return std::nullopt;
@@ -33,6 +46,17 @@ std::optional<ConnectedLight> connect_to_light(const Scene& scene, const Surface
     const std::optional<LightConnection> connection = draw_connection(scene, surface, outgoing, random);
     if (!connection || is_occluded(scene, connection->segment)) return std::nullopt;
     return connection->light;
+}
+
+double weight_of_connection(const ConnectedLight& light) {
+    return light.light_density > 0.0 ? light.light_density / (light.light_density + light.bsdf_density) : 1.0;
+}
+
+double weight_of_ray(const Scene& scene, const Vector& position, const Vector& direction, const std::optional<Hit>& hit,
+                     float bsdf_density) {
+    if (!(bsdf_density > 0.0f)) return 1.0;
+    const double density = static_cast<double>(bsdf_density);
+    return density / (density + connection_density(scene, position, direction, hit));
 }
 
 }  // namespace photonlab

@@ -35,4 +35,11 @@ std::optional<LightConnection> draw_connection(const Scene& scene, const Surface
 std::optional<ConnectedLight> connect_to_light(const Scene& scene, const Surface& surface, const Vector& outgoing,
                                                RandomStream& random);
 
+/// Weights of the balance heuristic for light that is found twice, by a connection and by the ray that goes on, which
+/// was drawn from the BSDF with `bsdf_density` per steradian; 0: in a single direction, which no connection finds.
+/// [Veach & Guibas 1995, "Optimally Combining Sampling Techniques"]
+double weight_of_connection(const ConnectedLight& light);
+double weight_of_ray(const Scene& scene, const Vector& position, const Vector& direction, const std::optional<Hit>& hit,
+                     float bsdf_density);
+
 }  // namespace photonlab

@@ -26,9 +26,12 @@ TEST_F(CommandLine, MisspeltCommandsAreAnsweredWithTheNearest) {
     EXPECT_EQ(refusal_of({"Compare", "a", "b"}), "there is no command \"Compare\"; did you mean \"compare\"?\n");
     EXPECT_EQ(refusal_of({"help", "rednr"}), "there is no command \"rednr\"; did you mean \"render\"?\n");
     EXPECT_EQ(refusal_of({"walk"}),
-              "there is no command \"walk\"; expected render, run, reference, compare, info, verify\n");
+              "there is no command \"walk\"; expected new, render, run, join, analyse, figure, reference, compare, "
+              "info, merge, verify\n");
     EXPECT_EQ(refusal_of({}),
-              "expected a command: render, run, reference, compare, info, verify; photonlab help says more\n");
+              "expected a command: new, render, run, join, analyse, figure, reference, compare, info, merge, verify; "
+              "photonlab help "
+              "says more\n");
 }
 
 TEST_F(CommandLine, MisspeltOptionsAreAnsweredBeforeWhatIsMissing) {
@@ -50,12 +53,13 @@ TEST_F(CommandLine, EmptyWordsAreRefusedByTheirOption) {
     const std::string scene = (folder_ / "walls/scene.xml").string();
     for (const std::string option :
          {"-o", "--integrator", "--alpha", "--passes", "--seed", "--threads", "--resolution", "--samples-per-pixel",
-          "--reference", "--csv", "--png", "--snapshots", "--checkpoint", "--checkpoint-seconds"}) {
+          "--reference", "--csv", "--png", "--snapshots", "--checkpoint", "--checkpoint-seconds", "--emission-from"}) {
         EXPECT_EQ(refusal_of({"render", scene, option, ""}), option + ": expected a value, it is empty\n");
         if (option == "-o") continue;
         EXPECT_EQ(refusal_of({"render", scene, option + "="}), option + ": expected a value, it is empty\n");
     }
-    for (const std::string command : {"render", "run", "reference", "compare", "info", "verify"})
+    for (const std::string command :
+         {"new", "render", "run", "join", "analyse", "figure", "reference", "compare", "info", "merge", "verify"})
         EXPECT_EQ(refusal_of({command, ""}), "argument 2: expected a value, it is empty\n");
     EXPECT_EQ(refusal_of({"run", "a.toml", "--only", ""}), "--only: expected a value, it is empty\n");
     EXPECT_EQ(refusal_of({"compare", scene, scene, "--component", ""}), "--component: expected a value, it is empty\n");
@@ -65,7 +69,8 @@ TEST_F(CommandLine, EmptyWordsAreRefusedByTheirOption) {
 TEST_F(CommandLine, HelpIsACommandToo) {
     EXPECT_EQ(output_of({"help"}), output_of({"--help"}));
     EXPECT_NE(output_of({"help"}).find("Exit codes: 0 done;"), std::string::npos);
-    for (const std::string command : {"render", "run", "reference", "compare", "info", "verify"}) {
+    for (const std::string command :
+         {"new", "render", "run", "join", "analyse", "figure", "reference", "compare", "info", "merge", "verify"}) {
         EXPECT_EQ(output_of({"help", command}), output_of({command, "--help"}));
         EXPECT_NE(output_of({"help", command}).find("Usage: photonlab " + command), std::string::npos);
     }

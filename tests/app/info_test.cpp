@@ -6,7 +6,7 @@
 #include "render/pass_loop.h"
 #include "scene/loader.h"
 #include "tests/app/program.h"
-#include "transport/photons.h"
+#include "transport/light/photons.h"
 
 namespace photonlab {
 namespace {

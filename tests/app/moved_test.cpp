@@ -16,11 +16,17 @@ TEST_F(Moved, TheProgramFindsTheImageCodecsBesideItself) {
     std::filesystem::create_directory(bin);
     std::filesystem::copy_file(program, bin / "photonlab");
     std::filesystem::copy_file(codecs, bin / codecs.filename());
-    const std::string render = "'" + (bin / "photonlab").string() + "' render '" +
-                               (folder_ / "walls/scene.xml").string() + "' -o '" + (folder_ / "a.exr").string() +
-                               "' --png '" + (folder_ / "a.png").string() + "' --passes 1 --photons 10 > /dev/null";
-    EXPECT_EQ(std::system(render.c_str()), 0);
-    EXPECT_TRUE(std::filesystem::exists(folder_ / "a.png"));
+    // A texture that only the codecs read: a Targa of one pixel.
+    folder_.write("textured/grey.tga", std::string("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\30\0\200\200\200", 21));
+    folder_.write("textured/scene.xml",
+                  "<scene version='3.0.0'><sensor type='perspective'/><shape type='rectangle'><bsdf type='diffuse'>"
+                  "<texture type='bitmap' name='reflectance'><string name='filename' value='grey.tga'/></texture>"
+                  "</bsdf></shape></scene>");
+    const std::string info =
+        "'" + (bin / "photonlab").string() + "' info '" + (folder_ / "textured/scene.xml").string() + "' > /dev/null";
+    EXPECT_EQ(std::system(info.c_str()), 0);
+    std::filesystem::remove(bin / codecs.filename());
+    EXPECT_NE(std::system((info + " 2>&1").c_str()), 0) << "it read the texture without them";
 }
 
 }  // namespace

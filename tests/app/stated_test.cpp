@@ -11,12 +11,12 @@
 #include <sstream>
 
 #include "app/interruption.h"
-#include "experiment/experiment_file.h"
+#include "experiment/file/experiment_file.h"
 #include "image/metrics.h"
 #include "integrators/density_estimate.h"
 #include "integrators/registry.h"
-#include "integrators/settings_table.h"
-#include "record/ensemble.h"
+#include "integrators/settings/settings_table.h"
+#include "record/images/ensemble.h"
 #include "record/recorder.h"
 #include "reference/reference_check.h"
 #include "reference/reference_store.h"
@@ -250,8 +250,9 @@ TEST_F(Stated, ExperimentsAreThoseInTheRepository) {
     for (const Row& row : table(page, "experiment"))
         for (const std::string& name : quoted(row.at(0))) stated.insert(name);
     NameSet files;
-    for (const auto& entry : std::filesystem::directory_iterator(source / "experiments"))
-        if (entry.path().extension() == ".toml") files.insert(entry.path().stem().string());
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(source / "experiments"))
+        if (entry.path().extension() == ".toml")
+            files.insert(entry.path().lexically_relative(source / "experiments").replace_extension().string());
     EXPECT_EQ(stated, files);
     EXPECT_NE(read_text_file(source / "demo").find("experiments/demo.toml"), std::string::npos);
 }

@@ -64,7 +64,7 @@ TEST_F(StoppedProgram, ReferenceSavesAndEndsWithThree) {
     ASSERT_TRUE(program.wait_for(folder_ / "growing/lock")) << program.messages();
     std::string said;
     Program second(command, folder_ / "more messages");
-    EXPECT_EQ(second.wait(), 2);
+    EXPECT_EQ(second.wait(), 4);
     EXPECT_NE(second.messages().find("growing: another process is adding samples to this reference"), std::string::npos)
         << second.messages();
     program.send(SIGINT);
@@ -94,6 +94,17 @@ TEST_F(StoppedProgram, ASecondSignalEndsItAtOnce) {
         if (is_heard) program.send(SIGINT);
         EXPECT_EQ(program.wait(), -SIGINT);
     }
+}
+
+// A queueing system that ends a job tells the program, and so does the script that runs it.
+TEST_F(StoppedProgram, ATerminationToldTwiceIsOne) {
+    Program program(render_into("cut", 100000), folder_ / "messages");
+    ASSERT_TRUE(program.wait_for(folder_ / "cut.checkpoint")) << program.messages();
+    program.send(SIGTERM);
+    program.send(SIGTERM);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    if (program.is_running()) program.send(SIGTERM);
+    EXPECT_EQ(program.wait(), 3) << program.messages();
 }
 
 TEST_F(StoppedProgram, TwoOfItShareTheRunsOfOneFolder) {
@@ -129,7 +140,7 @@ TEST_F(StoppedProgram, TwoRendersDoNotShareACheckpoint) {
     Program first(render_into("one", 100000), folder_ / "first messages");
     ASSERT_TRUE(first.wait_for(folder_ / "one.checkpoint")) << first.messages();
     std::string said;
-    EXPECT_EQ(run_program(render_into("one", 100000), said), 2);
+    EXPECT_EQ(run_program(render_into("one", 100000), said), 4);
     EXPECT_NE(said.find("one.checkpoint: another process is rendering with this checkpoint"), std::string::npos)
         << said;
 }

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "core/morton.h"
-#include "gather/photon_map.h"
-#include "gather/photon_order.h"
+#include "gather/map/photon_map.h"
+#include "gather/map/photon_order.h"
 
 namespace photonlab::benchmarks {
 

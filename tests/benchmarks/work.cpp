@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "gather/search_order.h"
+#include "gather/map/search_order.h"
 #include "render/pass_loop.h"
 #include "scene/loader.h"
 

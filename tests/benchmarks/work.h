@@ -7,12 +7,12 @@
 #include <optional>
 #include <vector>
 
-#include "gather/photon_map.h"
+#include "gather/map/photon_map.h"
 #include "integrators/integrator.h"
-#include "integrators/settings.h"
+#include "integrators/settings/settings.h"
 #include "scene/scene.h"
-#include "transport/camera_pass.h"
-#include "transport/photons.h"
+#include "transport/camera/camera_pass.h"
+#include "transport/light/photons.h"
 
 namespace photonlab::benchmarks {
 

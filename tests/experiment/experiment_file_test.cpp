@@ -1,4 +1,4 @@
-#include "experiment/experiment_file.h"
+#include "experiment/file/experiment_file.h"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ protected:
     }
     std::vector<std::string> names(const Experiment& experiment) {
         std::vector<std::string> result;
-        for (const ExperimentRun& run : experiment.runs) result.push_back(run.name);
+        for (const ExperimentRun& run : runs_of(experiment)) result.push_back(run.name);
         return result;
     }
     TestFolder folder_;
@@ -46,8 +46,25 @@ TEST_F(ExperimentFile, IsTheProductOfScenesMethodsAxesAndSeeds) {
                                   "box_ppm_alpha-0.7_seed-2", "box_pm_seed-1", "box_pm_seed-2",
                                   "lamp_ppm_alpha-0.5_seed-1", "lamp_ppm_alpha-0.5_seed-2", "lamp_ppm_alpha-0.7_seed-1",
                                   "lamp_ppm_alpha-0.7_seed-2", "lamp_pm_seed-1", "lamp_pm_seed-2"}));
-    EXPECT_EQ(experiment.runs[2].settings.values.alpha, 0.7);
-    EXPECT_EQ(experiment.runs[4].settings.values.k, 50);
+    EXPECT_EQ(experiment.points[1].settings.values.alpha, 0.7);
+    EXPECT_EQ(experiment.points[2].settings.values.k, 50);
+}
+
+// A job of many makes what it needs of the product; it must be what the whole product has.
+TEST_F(ExperimentFile, RunsOfGroupsAreThoseOfAllThatAreInThem) {
+    const Experiment experiment = read(
+        "scenes = [\"box/scene.xml\", \"lamp.xml\"]\npasses = 8\nseeds = [4, 9, 2]\n"
+        "[[method]]\nintegrator = \"ppm\"\nalpha = [0.5, 0.7]\n");
+    ASSERT_EQ(experiment.group_count(), 6u);
+    for (std::size_t first = 1; first <= 6; ++first)
+        for (std::size_t last = first; last <= 6; ++last) {
+            std::vector<std::string> expected, found;
+            for (const ExperimentRun& run : runs_of(experiment))
+                if (first <= run.group && run.group <= last) expected.push_back(run.name);
+            for (const ExperimentRun& run : runs_of(experiment, GroupRange{first, last})) found.push_back(run.name);
+            EXPECT_EQ(found, expected) << first << " to " << last;
+            EXPECT_EQ(found.size(), 2 * (last - first + 1));
+        }
 }
 
 TEST_F(ExperimentFile, TopLevelSettingsAreDefaultsWhereTheyAreUsed) {
@@ -57,8 +74,8 @@ TEST_F(ExperimentFile, TopLevelSettingsAreDefaultsWhereTheyAreUsed) {
              "[[method]]\nname = \"few\"\nintegrator = \"ppm\"\nphotons_per_pass = 5\nalpha = 0.6\n");
     EXPECT_EQ(names(experiment), (std::vector<std::string>{"box_ppm_alpha-0.5_seed-1", "box_ppm_alpha-0.9_seed-1",
                                                            "box_path_seed-1", "box_few_seed-1"}));
-    EXPECT_EQ(experiment.runs[0].settings.values.photons_per_pass, 77u);
-    EXPECT_EQ(experiment.runs[3].settings.values.photons_per_pass, 5u);
+    EXPECT_EQ(experiment.points[0].settings.values.photons_per_pass, 77u);
+    EXPECT_EQ(experiment.points[3].settings.values.photons_per_pass, 5u);
 }
 
 TEST_F(ExperimentFile, SamplesPerPixelAreOneUnlessItSaysOtherwise) {
@@ -87,9 +104,10 @@ TEST_F(ExperimentFile, SamplesPerPixelCanBeSwept) {
 
 TEST_F(ExperimentFile, PassZeroAndTheLastAreAlwaysRecorded) {
     using Passes = std::vector<std::uint64_t>;
-    EXPECT_EQ(read("scenes = [\"lamp.xml\"]\npasses = 11\n" + ppm).runs[0].plan.recorded, (Passes{0, 1, 2, 4, 8, 11}));
-    EXPECT_EQ(read(least + "record = \"all\"\n" + ppm).runs[0].plan.recorded, (Passes{0, 1, 2, 3, 4, 5, 6, 7, 8}));
-    const PassPlan listed = read(least + "record = [3, 2]\nsnapshots = [1]\n" + ppm).runs[0].plan;
+    EXPECT_EQ(read("scenes = [\"lamp.xml\"]\npasses = 11\n" + ppm).points[0].plan.recorded,
+              (Passes{0, 1, 2, 4, 8, 11}));
+    EXPECT_EQ(read(least + "record = \"all\"\n" + ppm).points[0].plan.recorded, (Passes{0, 1, 2, 3, 4, 5, 6, 7, 8}));
+    const PassPlan listed = read(least + "record = [3, 2]\nsnapshots = [1]\n" + ppm).points[0].plan;
     EXPECT_EQ(listed.recorded, (Passes{0, 2, 3, 8}));
     EXPECT_EQ(listed.snapshots, (Passes{1, 8}));
 }
@@ -99,11 +117,11 @@ TEST_F(ExperimentFile, AMethodMayHavePassesOfItsOwn) {
     using Passes = std::vector<std::uint64_t>;
     const std::string methods = ppm + "[[method]]\nname = \"more\"\nintegrator = \"ppm\"\npasses = 20\n";
     const Experiment experiment = read(least + "record = [3, 12]\n" + methods);
-    EXPECT_EQ(experiment.runs[0].plan.recorded, (Passes{0, 3, 8}));
-    EXPECT_EQ(experiment.runs[1].plan.recorded, (Passes{0, 3, 12, 20}));
-    EXPECT_EQ(experiment.runs[1].plan.passes, 20u);
-    EXPECT_EQ(read(least + methods).runs[1].plan.recorded, (Passes{0, 1, 2, 4, 8, 16, 20}));
-    EXPECT_EQ(read(least + methods, SmokeLimits{}).runs[1].plan.passes, 4u);
+    EXPECT_EQ(experiment.points[0].plan.recorded, (Passes{0, 3, 8}));
+    EXPECT_EQ(experiment.points[1].plan.recorded, (Passes{0, 3, 12, 20}));
+    EXPECT_EQ(experiment.points[1].plan.passes, 20u);
+    EXPECT_EQ(read(least + methods).points[1].plan.recorded, (Passes{0, 1, 2, 4, 8, 16, 20}));
+    EXPECT_EQ(read(least + methods, SmokeLimits{}).points[1].plan.passes, 4u);
     EXPECT_TRUE(refusal(least + ppm + "passes = 0\n").starts_with(":5: passes: expected a whole number"));
     EXPECT_TRUE(refusal(least + "record = [21]\n" + methods).starts_with(":3: record: expected a whole number from 0"));
 }
@@ -112,18 +130,18 @@ TEST_F(ExperimentFile, SmokeShrinksPassesPhotonsAndSeeds) {
     const Experiment experiment =
         read(least + "seeds = [5, 6, 7]\nrecord = [3, 8]\nsnapshots = [8]\n" + ppm, SmokeLimits{});
     EXPECT_EQ(experiment.name, "question-smoke");
-    EXPECT_EQ(experiment.runs[0].plan.passes, 4u);
-    EXPECT_EQ(experiment.runs[0].plan.recorded, (std::vector<std::uint64_t>{0, 3, 4}));
-    EXPECT_EQ(experiment.runs[0].plan.snapshots, (std::vector<std::uint64_t>{4}));
-    ASSERT_EQ(experiment.runs.size(), 2u);
-    EXPECT_EQ(experiment.runs[0].settings.values.photons_per_pass, 2000u);
+    EXPECT_EQ(experiment.points[0].plan.passes, 4u);
+    EXPECT_EQ(experiment.points[0].plan.recorded, (std::vector<std::uint64_t>{0, 3, 4}));
+    EXPECT_EQ(experiment.points[0].plan.snapshots, (std::vector<std::uint64_t>{4}));
+    ASSERT_EQ(experiment.run_count(), 2u);
+    EXPECT_EQ(experiment.points[0].settings.values.photons_per_pass, 2000u);
 }
 
 TEST_F(ExperimentFile, TheDemonstrationIsSound) {
     const std::filesystem::path demo = std::filesystem::path(PHOTONLAB_SOURCE_DIR) / "experiments/demo.toml";
     if (!std::filesystem::exists(std::filesystem::path(PHOTONLAB_SOURCE_DIR) / "reference/cornell-box"))
         GTEST_SKIP() << "its scene or reference is not here";
-    EXPECT_EQ(read_experiment(demo).runs.size(), 20u);
+    EXPECT_EQ(read_experiment(demo).run_count(), 20u);
 }
 
 TEST_F(ExperimentFile, ScenesHaveRegionsAndProbes) {
@@ -141,7 +159,7 @@ TEST_F(ExperimentFile, ScenesHaveRegionsAndProbes) {
     EXPECT_EQ(experiment.scenes[0].probes[0].name, "corner");
     EXPECT_EQ(experiment.scenes[0].probes[0].y, 6);
     EXPECT_FALSE(read(least + ppm).decomposition);
-    EXPECT_EQ(read(least + ppm).runs[0].point, "box_ppm");
+    EXPECT_EQ(read(least + ppm).points[0].name, "box_ppm");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "experiment/run_list.h"
 #include "image/exr.h"
 #include "record/recorder.h"
 #include "reference/reference_store.h"
@@ -30,7 +31,7 @@ protected:
                           "[[method]]\nname = \"photons-only\"\nintegrator = \"ppm\"\ndirect = \"photons\"\n"
                           "[[method]]\nintegrator = \"path\"\n");
         const Experiment experiment = read_experiment(folder_ / "tiny.toml");
-        return run_experiment(experiment, prepare_experiment(experiment, results(), only), results());
+        return run_experiment(experiment, prepare_experiment(experiment, results(), {only}), results());
     }
     std::filesystem::path results() { return folder_ / "results"; }
 
@@ -199,18 +200,18 @@ TEST_F(ExperimentRuns, WhereASceneThatIsNotSelectedCannotBeLoadedTheRecordsStay)
         "passes = 2\nthreads = 1\nphotons_per_pass = 400\nscenes = [\"walls/scene.xml\", \"other/scene.xml\"]\n"
         "[[method]]\nintegrator = \"ppm\"\n[[method]]\nintegrator = \"path\"\n");
     const Experiment two = read_experiment(folder_ / "two.toml");
-    run_experiment(two, prepare_experiment(two, results(), "*_ppm_*"), results());
+    run_experiment(two, prepare_experiment(two, results(), {"*_ppm_*"}), results());
     const std::string before = read_text_file(results() / "iterations.csv");
     folder_.write("other/scene.xml", "<scene>");
     const ExperimentOutcome outcome =
-        run_experiment(two, prepare_experiment(two, results(), "walls_path_*"), results());
+        run_experiment(two, prepare_experiment(two, results(), {"walls_path_*"}), results());
     EXPECT_EQ(outcome.ran, 1u);
     EXPECT_FALSE(outcome.merged);
     EXPECT_NE(outcome.why_not_merged.find("other/scene.xml"), std::string::npos) << outcome.why_not_merged;
     EXPECT_EQ(read_text_file(results() / "iterations.csv"), before);
 
     folder_.write("other/scene.xml", two_walls_scene);
-    EXPECT_EQ(run_experiment(two, prepare_experiment(two, results(), "walls_path_*"), results()).merged->runs, 3u);
+    EXPECT_EQ(run_experiment(two, prepare_experiment(two, results(), {"walls_path_*"}), results()).merged->runs, 3u);
 }
 
 TEST_F(ExperimentRuns, ARadiusThatTheSceneCannotResolveIsRefusedBeforeAnythingRuns) {

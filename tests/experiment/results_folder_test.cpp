@@ -11,13 +11,14 @@ namespace {
 
 class ResultsFolder : public ::testing::Test {
 protected:
-    static Experiment experiment(const std::string& name = "study", const std::string& run = "box_ppm_seed-1") {
+    static Experiment experiment(const std::string& name = "study", const std::string& point = "box_ppm") {
         Experiment experiment;
         experiment.file = "/somewhere/" + name + ".toml";
         experiment.name = name;
         experiment.title = "Is it mine?";
-        experiment.runs.resize(1);
-        experiment.runs[0].name = run;
+        experiment.points.resize(1);
+        experiment.points[0].name = point;
+        experiment.seeds = {1};
         return experiment;
     }
     std::filesystem::path results() const { return folder_ / "results"; }
@@ -75,7 +76,7 @@ TEST_F(ResultsFolder, OfTheExperimentIsKeptAsItIsUnlessItSaysOtherwise) {
 
 TEST_F(ResultsFolder, OfAnotherExperimentIsRefusedThoughTheyHaveNoRunInCommon) {
     claim_results(experiment(), results());
-    EXPECT_EQ(refusal(experiment("other", "sphere_path_seed-7")),
+    EXPECT_EQ(refusal(experiment("other", "sphere_path")),
               "experiment.json: these are results of the experiment \"study\", not of \"other\"; choose another folder "
               "for the results");
     Experiment small = experiment();
@@ -85,15 +86,15 @@ TEST_F(ResultsFolder, OfAnotherExperimentIsRefusedThoughTheyHaveNoRunInCommon) {
 
 TEST_F(ResultsFolder, OfAnotherFileOfTheSameNameIsRefusedUnlessTheyHaveARunInCommon) {
     claim_results(experiment(), results());
-    Experiment elsewhere = experiment("study", "sphere_path_seed-7");
+    Experiment elsewhere = experiment("study", "sphere_path");
     elsewhere.file = "/elsewhere/study.toml";
     EXPECT_EQ(refusal(elsewhere), "");  // nothing was made yet
     std::filesystem::create_directories(results() / "runs/box_ppm_seed-1");
     EXPECT_NE(refusal(elsewhere).find("these are results of /somewhere/study.toml, which has no run in common with "
                                       "/elsewhere/study.toml"),
               std::string::npos);
-    EXPECT_EQ(refusal(experiment("study", "sphere_path_seed-7")), "");  // its own file, changed
-    elsewhere.runs[0].name = "box_ppm_seed-1";
+    EXPECT_EQ(refusal(experiment("study", "sphere_path")), "");  // its own file, changed
+    elsewhere.points[0].name = "box_ppm";
     EXPECT_EQ(refusal(elsewhere), "");  // moved
 }
 

@@ -6,6 +6,7 @@
 
 #include <set>
 
+#include "core/machine/host.h"
 #include "experiment/experiment_runs.h"
 #include "reference/reference_store.h"
 #include "tests/support/results.h"
@@ -25,7 +26,7 @@ protected:
     ExperimentOutcome run(const std::string& results, const ContinuationOptions& options = {},
                           const std::optional<std::string>& only = std::nullopt) {
         const Experiment experiment = read_experiment(folder_ / "tiny.toml");
-        return run_experiment(experiment, prepare_experiment(experiment, folder_ / results, only), folder_ / results,
+        return run_experiment(experiment, prepare_experiment(experiment, folder_ / results, {only}), folder_ / results,
                               options);
     }
 
@@ -71,6 +72,19 @@ TEST_F(InterruptedExperiment, KeepsTheTimeThatItTook) {
     }
 }
 
+TEST_F(InterruptedExperiment, SaysWhoMadeItUpToWhichPass) {
+    EXPECT_TRUE(run("cut", interrupted_after(5), "*path*seed-1").is_interrupted);
+    run("cut", {}, "*path*seed-1");
+    const Json json = Json::parse(read_text_file(folder_ / "cut/runs/walls_path_seed-1/run.json"));
+    EXPECT_EQ(json.at("resumed"), 1);
+    ASSERT_EQ(json.at("sessions").size(), 2u);
+    EXPECT_EQ(json.at("sessions")[0].at("until_pass"), 4);
+    EXPECT_EQ(json.at("sessions")[1].at("until_pass"), json.at("passes"));
+    EXPECT_EQ(json.at("sessions")[1].at("host"), host_name());
+    EXPECT_EQ(json.at("sessions")[1].at("processor"), json.at("processor"));
+    EXPECT_TRUE(json.at("sessions")[1].at("job").is_null());
+}
+
 TEST_F(InterruptedExperiment, RefusesADamagedCheckpointBeforeAnythingIsRunAndBeginsAnewBesideIt) {
     run("whole");
     EXPECT_TRUE(run("cut", interrupted_after(3)).is_interrupted);
@@ -109,6 +123,21 @@ TEST_F(InterruptedExperiment, SavesAfterEveryPassThatTakesLongerThanTheSeconds) 
     };
     run("cut", options, "*path*seed-1");
     EXPECT_EQ(times.size(), 4u);  // asked after passes 1 to 5, before it is saved
+}
+
+// Whoever took the lock makes the run by now, even where one pass is all that is missing.
+TEST_F(InterruptedExperiment, WritesNothingMoreOnceItsLockIsGone) {
+    ContinuationOptions options;
+    int asked = 0;
+    options.is_interrupted = [&] {
+        if (++asked == 6) std::filesystem::remove(folder_ / "cut/runs/walls_path_seed-1/lock");  // after pass 5 of 6
+        return false;
+    };
+    EXPECT_NE(message_of([&] { run("cut", options, "*path*seed-1"); }).find("lock: was removed, or taken by another"),
+              std::string::npos);
+    EXPECT_EQ(asked, 6);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "cut/runs/walls_path_seed-1/run.json"));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "cut/iterations.csv"));
 }
 
 // It was written before the checkpoint, and nothing would write it again.

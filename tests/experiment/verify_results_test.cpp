@@ -11,7 +11,7 @@
 
 #include "experiment/experiment_runs.h"
 #include "image/exr.h"
-#include "record/run_record.h"
+#include "record/run/run_record.h"
 #include "tests/support/results.h"
 #include "tests/support/two_walls.h"
 
@@ -37,7 +37,7 @@ protected:
 
     ExperimentOutcome run(const std::optional<std::string>& only = std::nullopt) {
         const Experiment experiment = read_experiment(folder_ / "tiny.toml");
-        return run_experiment(experiment, prepare_experiment(experiment, results(), only), results());
+        return run_experiment(experiment, prepare_experiment(experiment, results(), {only}), results());
     }
 
     std::filesystem::path results() { return folder_ / "results"; }

@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "scene/loader.h"
-#include "scene/shapes/obj.h"
+#include "scene/shapes/meshes/obj.h"
 #include "tests/statistical/rendering.h"
 #include "tests/statistical/scenes.h"
 

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "integrators/settings.h"
+#include "integrators/settings/settings.h"
 #include "tests/statistical/scenes.h"
 
 namespace photonlab::test {

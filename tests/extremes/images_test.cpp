@@ -11,7 +11,7 @@
 #include "integrators/layers.h"
 #include "tests/extremes/foot_of_light.h"
 #include "tests/statistical/rendering.h"
-#include "transport/plain_images.h"
+#include "transport/camera/plain_images.h"
 
 namespace photonlab::test {
 namespace {

@@ -19,7 +19,7 @@
 #include <cstdint>
 
 #include "core/math.h"
-#include "gather/radius_rule.h"
+#include "gather/radii/radius_rule.h"
 
 namespace photonlab::test {
 

@@ -1,6 +1,6 @@
 // Experiment files, with a scene beside them to name; whole and as --smoke shrinks them.
 
-#include "experiment/experiment_file.h"
+#include "experiment/file/experiment_file.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace photonlab;

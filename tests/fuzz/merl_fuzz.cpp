@@ -3,7 +3,8 @@
 
 #include <cstring>
 
-#include "scene/materials/merl.h"
+#include "scene/materials/rough/merl.h"
+#include "scene/mitsuba/xml_reader.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace photonlab;
@@ -22,7 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                         data + i * sizeof(double), sizeof(double));
     }
     const auto file = folder.write("table.binary", bytes);
-    std::string read;
+    BytesRead read;
     fuzz::read_or_refuse([&] { load_merl_table(file, "scene.xml:1", read); });
     return 0;
 }

@@ -6,7 +6,7 @@
 #include "experiment/verify_results.h"
 #include "record/merged_records.h"
 #include "record/recorder.h"
-#include "record/run_record.h"
+#include "record/run/run_record.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace photonlab;

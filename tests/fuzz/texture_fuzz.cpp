@@ -1,4 +1,5 @@
-// Bitmaps, through OpenImageIO: of PNG, which is what scenes here come with. Its other readers are not ours to fuzz.
+// Bitmaps of PNG, which is what scenes here come with: plain ones by libpng, all others by OpenImageIO, whose readers
+// of other formats are not ours to fuzz.
 
 #include "image/read_image.h"
 #include "tests/fuzz/fuzz.h"

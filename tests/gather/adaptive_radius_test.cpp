@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "gather/adaptive_radius.h"
+#include "gather/radii/adaptive_radius.h"
 
 namespace photonlab {
 namespace {

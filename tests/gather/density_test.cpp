@@ -14,8 +14,8 @@
 #include "core/random.h"
 #include "core/sampling.h"
 #include "gather/kernel.h"
-#include "gather/photon_map.h"
-#include "gather/radius_rule.h"
+#include "gather/map/photon_map.h"
+#include "gather/radii/radius_rule.h"
 
 namespace photonlab {
 namespace {

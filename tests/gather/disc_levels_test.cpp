@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/random.h"
-#include "gather/disc_tests.h"
+#include "gather/radii/disc_tests.h"
 
 namespace photonlab {
 namespace {

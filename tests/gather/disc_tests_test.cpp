@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "gather/disc_tests.h"
+#include "gather/radii/disc_tests.h"
 
 namespace photonlab {
 namespace {

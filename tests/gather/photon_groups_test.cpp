@@ -1,6 +1,6 @@
 // Groups of photons: every photon is in one, in order, and inside its ball; distances are those of plain code.
 
-#include "gather/photon_groups.h"
+#include "gather/map/photon_groups.h"
 
 #include <gtest/gtest.h>
 

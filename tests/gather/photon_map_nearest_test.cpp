@@ -1,6 +1,6 @@
 // The nearest photons, against brute force: which they are, which of them carry flux, and the radius of their disc.
 
-#include "gather/photon_map.h"
+#include "gather/map/photon_map.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,12 @@
 // What a map is whatever it is asked: what it holds, that it cannot be broken by what FLANN itself does not survive,
 // and that its answers depend neither on the order of photons nor on threads.
 
-#include "gather/photon_map.h"
+#include "gather/map/photon_map.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -25,6 +26,21 @@ TEST(PhotonMap, AnswersNothingWithoutPhotons) {
     const NearestPhotons answer = map.nearest(Vector(0.0f), up, 10, 0.5, [](const Photon&, double, double) { FAIL(); });
     EXPECT_EQ(answer.found, 0u);
     EXPECT_EQ(answer.squared_radius, 0.25);
+}
+
+// Threads that wait at the end of a loop take pieces of the sorting that one of them began in it.
+TEST(PhotonMap, HasTheSameOrderWhoeverTakesPartInSorting) {
+    const std::vector<Photon> photons = photon_set("many", 100'000, [](RandomStream& random, std::size_t) {
+                                            return random_point(random, 1.0f);
+                                        }).photons;
+    const PhotonMap alone(photons);
+    PhotonMap shared({});
+    parallel_for(4, 4, [&](std::size_t item) {
+        if (item == 0) shared = PhotonMap(photons);
+    });
+    ASSERT_EQ(shared.size(), photons.size());
+    for (std::size_t i = 0; i < photons.size(); ++i)
+        ASSERT_EQ(std::memcmp(&shared.photons()[i], &alone.photons()[i], sizeof(Photon)), 0) << i;
 }
 
 TEST(PhotonMap, RefusesNonFinitePositionsAndLosesNoOtherPhoton) {

@@ -1,6 +1,6 @@
 // Everything within a radius, against brute force, to the last photon; and which photons count.
 
-#include "gather/photon_map.h"
+#include "gather/map/photon_map.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Photons along a Morton curve: each once, neighbours next to each other, ties as they were.
 
-#include "gather/photon_order.h"
+#include "gather/map/photon_order.h"
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/random.h"
-#include "gather/photon_map.h"
+#include "gather/map/photon_map.h"
 
 namespace photonlab {
 

@@ -1,7 +1,7 @@
 // Radius schedules against their closed forms, and the running mean of the passes' own estimates against the textbook
 // update of Hachisuka et al. 2008, to which it is equal (docs/theory.md, section 1).
 
-#include "gather/radius_rule.h"
+#include "gather/radii/radius_rule.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The order of search: a permutation of each block that keeps together what is together in space.
 
-#include "gather/search_order.h"
+#include "gather/map/search_order.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "scene/loader.h"
-#include "transport/camera_pass.h"
+#include "transport/camera/camera_pass.h"
 
 namespace photonlab {
 namespace {

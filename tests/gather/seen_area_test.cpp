@@ -3,16 +3,16 @@
 // independent sets of lines is a z-test at |z| < 4.5 (7e-6 each; about two hundred here), and is known to half a
 // percent of the disc at least.
 
-#include "gather/seen_area.h"
+#include "gather/areas/seen_area.h"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 
-#include "gather/flat_area.h"
-#include "gather/gather_areas.h"
-#include "gather/in_reach.h"
-#include "gather/photon_map.h"
+#include "gather/areas/flat_area.h"
+#include "gather/areas/gather_areas.h"
+#include "gather/areas/in_reach.h"
+#include "gather/map/photon_map.h"
 #include "tests/scene/described.h"
 
 namespace photonlab {

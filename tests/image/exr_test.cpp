@@ -192,6 +192,7 @@ TEST(Exr, TheRadiusIsOneChannelThatIsNoLayer) {
     const ScratchFolder folder;
     Image image = random_image(7, 5);
     for (int i = 0; i < 35; ++i) image.radius.push_back(static_cast<float>(i) * 0.1f);
+    image.count = image.radius;
     const std::filesystem::path file = folder / "image.exr";
     write_exr(file, image);
     std::vector<float> radius(35);
@@ -201,6 +202,8 @@ TEST(Exr, TheRadiusIsOneChannelThatIsNoLayer) {
     input.setFrameBuffer(frame);
     input.readPixels(0, 4);
     EXPECT_EQ(radius, image.radius);
+    EXPECT_TRUE(input.header().channels().findChannel("count"));
+    EXPECT_FALSE(input.header().channels().findChannel("density")) << "there is none";
     EXPECT_EQ(read_exr(file).layers.size(), image.layers.size());
 }
 
@@ -388,10 +391,52 @@ TEST(Exr, RefusesLuminanceAlone) {
                    "grey.exr: has no channel R; it has: Y (luminance is not read as grey)");
 }
 
+TEST(Exr, ReadsThePictureAsOtherProgramsCallIt) {
+    using Names = std::vector<std::string>;
+    const ScratchFolder folder;
+    const std::string layer = "ViewLayer.", pass = "Combined.";
+    for (const Names& names :
+         {Names{"r", "g", "b", "a"},            // oiiotool
+          Names{"red", "green", "blue"},        // the same
+          Names{"view.R", "view.G", "view.B"},  // oiiotool --ch
+          Names{layer + pass + "R", layer + pass + "G", layer + pass + "B", layer + pass + "A", layer + "Depth.Z",
+                layer + "DiffCol.R", layer + "DiffCol.G", layer + "DiffCol.B"}}) {
+        ForeignFile{.names = names}.write(folder / "foreign.exr");
+        SCOPED_TRACE(names[0]);
+        expect_foreign_values(read_exr(folder / "foreign.exr"));
+    }
+}
+
+TEST(Exr, TakesWhatBlendersCompositorMadeAndSaysSo) {
+    const ScratchFolder folder;
+    // In front of the channels that are to be read there is another layer's, behind them its own.
+    ForeignFile{.names = {"Composite.Combined.R", "Composite.Combined.G", "Composite.Combined.B", "Before.Combined.R",
+                          "Before.Combined.G", "Before.Combined.B", "ViewLayer.Combined.R", "ViewLayer.Combined.G",
+                          "ViewLayer.Combined.B"}}
+        .write(folder / "blender.exr");
+    expect_foreign_values(read_exr(folder / "blender.exr"));
+    EXPECT_EQ(chosen_picture(folder / "blender.exr"), "Composite.Combined");
+
+    ForeignFile{.names = {"r", "g", "b", "Composite.Combined.R", "Composite.Combined.G", "Composite.Combined.B"}}.write(
+        folder / "both.exr");
+    expect_foreign_values(read_exr(folder / "both.exr"));
+    EXPECT_EQ(chosen_picture(folder / "both.exr"), "") << "what has no layer is the picture";
+    ForeignFile{.names = {"ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B"}}.write(folder /
+                                                                                                         "one.exr");
+    EXPECT_EQ(chosen_picture(folder / "one.exr"), "");
+}
+
 TEST(Exr, RefusesFilesWithoutRgbAndNamesWhatTheyHave) {
     const ScratchFolder folder;
-    ForeignFile{.names = {"view.R", "view.G", "view.B"}}.write(folder / "layers.exr");
-    EXPECT_MESSAGE(read_exr(folder / "layers.exr"), "has no channel R; it has: view.B, view.G, view.R");
+    ForeignFile{.names = {"view.R", "view.G", "view.B", "left.R", "left.G", "left.B"}}.write(folder / "layers.exr");
+    EXPECT_MESSAGE(read_exr(folder / "layers.exr"),
+                   "has no channel R; it has: left.B, left.G, left.R, view.B, view.G, view.R");
+    ForeignFile{
+        .names = {"A.Combined.R", "A.Combined.G", "A.Combined.B", "B.Combined.R", "B.Combined.G", "B.Combined.B"}}
+        .write(folder / "views.exr");
+    EXPECT_MESSAGE(read_exr(folder / "views.exr"), "has no channel R; it has: A.Combined.B");
+    ForeignFile{.names = {"direct.R", "direct.G", "direct.B"}, .layers = "emission,direct"}.write(folder / "part.exr");
+    EXPECT_MESSAGE(read_exr(folder / "part.exr"), "has no channel R");
 }
 
 TEST(Exr, RefusesSubsampledColour) {

@@ -38,7 +38,15 @@ TEST(Compare, AgreesWithHandComputedValues) {
 TEST(Compare, LeavesWhatNeedsHalvesEmptyWithoutThem) {
     const ErrorMetrics metrics = compare({ColorD(1.0)}, single({ColorD(1.0)}));
     EXPECT_FALSE(metrics.of("mse_unbiased"));
+    EXPECT_FALSE(metrics.of("relmse_unbiased"));
     EXPECT_FALSE(metrics.of("reference_floor"));
+}
+
+// x = 4, A = 1, B = 2: 3 * 2 beside 1.5^2 + 0.01.
+TEST(Compare, RelativeErrorsAreFreeOfTheReferencesNoiseAsWell) {
+    const ErrorMetrics metrics = compare({ColorD(4.0)}, halves({ColorD(1.0)}, {ColorD(2.0)}));
+    EXPECT_DOUBLE_EQ(metrics.of("relmse_unbiased").value(), 6.0 / 2.26);
+    EXPECT_DOUBLE_EQ(metrics.of("relmse").value(), 6.25 / 2.26);
 }
 
 // x = 2, A = 1, B = 2: mse (0.5)^2, unbiased 1 * 0, floor 1/4.

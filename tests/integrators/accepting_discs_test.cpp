@@ -1,6 +1,6 @@
 // Whether a photon is seen is asked before the gather, and the gather accepts the same photons: those and no others.
 
-#include "gather/accepting_discs.h"
+#include "gather/areas/accepting_discs.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gather/photon_map.h"
+#include "gather/map/photon_map.h"
 #include "integrators/density_estimate.h"
 #include "tests/statistical/rendering.h"
 #include "tests/statistical/scenes.h"
@@ -77,6 +77,34 @@ TEST_F(CausticMap, IsSearchedWithItsOwnRadius) {
     expect_layer(gathered({.radius = global_radius, .caustic_radius = caustic_radius}), [&](const HitPoint& point) {
         return within(global, point, global_radius) + within(caustic, point, caustic_radius);
     });
+}
+
+TEST_F(CausticMap, DensityIsThatOfBothMapsEachInItsOwnDisc) {
+    const PhotonMap global(global_);
+    const PhotonMap caustic(caustic_);
+    PassLoop loop(scene_, hit_points_,
+                  {{.method = {.integrator = "photonmapper",
+                               .radius = global_radius,
+                               .caustic_radius = caustic_radius,
+                               .area = AreaMode::Disc,
+                               .photons_per_pass = 4000}}});
+    for (std::uint64_t pass = 1; pass <= traced_passes; ++pass) loop.take(pass);
+    const Image image = loop.image();
+    double caustic_share = 0.0;
+    for (std::size_t i = 0; i < hit_points_.points.size(); ++i) {
+        const HitPoint& point = hit_points_.points[i];
+        const auto density = [&](const PhotonMap& map, double radius) {
+            FluxSum sum(scene_, point, -1);
+            map.within(point.position, point.normal, radius / scene_.unit_length,
+                       [&](const Photon& photon, double) { sum.add(photon, 1.0); });
+            return static_cast<double>(sum.count()) / (pi * radius * radius);
+        };
+        const double of_caustic = density(caustic, caustic_radius);
+        const double expected = density(global, global_radius) + of_caustic;
+        EXPECT_NEAR(loop.integrator(0).gather_state(i)->density.value(), expected, 1e-9 * expected) << i;
+        caustic_share = std::max(caustic_share, of_caustic / std::max(expected, 1e-300));
+    }
+    EXPECT_GT(caustic_share, 0.5) << "some point has a caustic";
 }
 
 TEST_F(CausticMap, TakesTheGlobalRadiusUnlessItHasItsOwn) {

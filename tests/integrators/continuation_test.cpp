@@ -18,6 +18,8 @@ std::vector<NamedMethod> continued_methods() {
     const MethodSettings seen{.kernel = Kernel::Cone, .area = AreaMode::Seen, .area_lines = 4};
     const MethodSettings linear{.integrator = "sppm", .area = AreaMode::Linear, .area_lines = 4};
     const MethodSettings nearest{.integrator = "photonmapper", .mode = GatherMode::Nearest, .k = 20};
+    const MethodSettings relaxed{
+        .integrator = "photonmapper", .mode = GatherMode::Relaxed, .relaxation_steps = 2, .area = AreaMode::Disc};
     MethodSettings seen_nearest = nearest;
     seen_nearest.area = AreaMode::Seen;
     seen_nearest.area_lines = 4;
@@ -29,6 +31,7 @@ std::vector<NamedMethod> continued_methods() {
                                   {"photonmapper seen", seen_nearest},
                                   {"photonmapper radius", {.integrator = "photonmapper", .mode = GatherMode::Radius}},
                                   {"photonmapper nearest", nearest},
+                                  {"photonmapper relaxed", relaxed},
                                   {"path", {.integrator = "path"}}})
         methods.push_back(method);
     return methods;

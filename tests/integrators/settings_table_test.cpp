@@ -1,11 +1,11 @@
 // What the table of settings promises of each line, whatever lines there are.
 
-#include "integrators/settings_table.h"
+#include "integrators/settings/settings_table.h"
 
 #include <gtest/gtest.h>
 
-#include "integrators/chosen_settings.h"
 #include "integrators/registry.h"
+#include "integrators/settings/chosen_settings.h"
 
 namespace photonlab {
 namespace {

@@ -1,6 +1,6 @@
 // Mistakes in experiment files: one file each in experiment/, and here those that are too large for one.
 
-#include "experiment/experiment_file.h"
+#include "experiment/file/experiment_file.h"
 
 #include <sys/stat.h>
 
@@ -39,7 +39,7 @@ TEST(ExperimentMistakes, FilesThatAreNoTextOrTooLargeAreRefused) {
     for (int i = 0; i < 200'000; ++i) many += ", 0.25";
     EXPECT_EQ(message(many + "]\n"),
               "a.toml:3: two runs are called lamp_ppm_alpha-0.25_seed-1: give methods and scenes "
-              "names of their own, and values and seeds once");
+              "names of their own, and values once");
 }
 
 // toml++ takes tables down by recursion, one for every name of a key.

@@ -9,7 +9,8 @@
 #include "image/exr.h"
 #include "image/png.h"
 #include "image/read_image.h"
-#include "scene/materials/merl.h"
+#include "scene/materials/rough/merl.h"
+#include "scene/mitsuba/xml_reader.h"
 #include "tests/mistakes/mistakes.h"
 
 // Read by LeakSanitizer, in builds that have it. libpng jumps over OpenImageIO's destructors where a PNG is broken,
@@ -122,7 +123,7 @@ TEST(MerlMistakes, EachGetsItsMessage) {
     std::string good = little_endian(90) + little_endian(90) + little_endian(180);
     good.resize(MerlTable::file_size, '\0');
     const auto message = [&](const std::string& bytes) {
-        std::string read;
+        BytesRead read;
         return refusal(folder.path(), [&] { load_merl_table(folder.write("a.binary", bytes), "scene.xml:7", read); });
     };
     const std::string expected =

@@ -7,7 +7,7 @@
 
 #include "scene/loader.h"
 #include "scene/scene.h"
-#include "scene/shapes/obj.h"
+#include "scene/shapes/meshes/obj.h"
 #include "tests/mistakes/mistakes.h"
 
 namespace photonlab::test {

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "record/recorder.h"
-#include "record/run_record.h"
+#include "record/run/run_record.h"
 #include "tests/support/test_folder.h"
 
 namespace photonlab {

@@ -8,7 +8,7 @@
 
 #include "core/files/kept_files.h"
 #include "core/text/csv.h"
-#include "integrators/settings_table.h"
+#include "integrators/settings/settings_table.h"
 #include "tests/support/test_folder.h"
 
 namespace photonlab {
@@ -36,20 +36,34 @@ TEST(Records, ColumnsAreThoseOfTheContract) {
     EXPECT_EQ(
         csv_header(),
         "schema,experiment,run,scene,method,integrator,mode,schedule,photon_paths,step_rule,emission,learn_passes,"
+        "light_sequence,"
         "alpha,kappa,"
         "smallest_radius,largest_radius,"
-        "laplacian_radius,test_variant,start,test_photons,test_shrink,test_growth,positions,branches,estimate_error,"
+        "laplacian_radius,test_variant,start,test_photons,test_shrink,test_growth,positions,branches,"
+        "glossy,gather_roughness,estimate_error,"
         "k,radius_rule,radius_initial,footprints,max_radius,"
         "caustic_k,"
-        "caustic_radius,caustic_max_radius,kernel,area,area_lines,eps,"
+        "caustic_radius,caustic_max_radius,relaxation_steps,features,kernel,area,area_lines,eps,"
         "direct,direct_samples,max_depth,branch_cutoff,photons_per_pass,width,height,samples_per_pixel,hit_points,seed,"
         "threads,"
-        "pass,component,"
+        "pass,ranges,component,"
         "paths_emitted,paths_traced,paths_seen,mutations_accepted,step_size,photons_stored,photons_gathered,seconds,"
         "cpu_seconds,seconds_trace,seconds_build,seconds_gather,"
-        "seconds_direct,seconds_points,map_bytes,hit_point_bytes,peak_rss_mib,radius_min,radius_mean,radius_max,"
+        "seconds_direct,seconds_points,seconds_relax,map_bytes,hit_point_bytes,peak_rss_mib,radius_min,radius_mean,"
+        "radius_max,"
         "estimated_bias,estimated_deviation,within_50,within_90,"
-        "mse,mse_unbiased,rmse,relmse,smape,bias,max_error,reference_floor,nonfinite");
+        "mse,mse_unbiased,rmse,relmse,relmse_unbiased,smape,bias,max_error,reference_floor,nonfinite");
+}
+
+TEST(Records, SayOfWhichPassesTheyAre) {
+    RunIdentity identity;
+    RunState state;
+    state.ranges = {{1, 12}};
+    EXPECT_EQ(cell({identity, state, "total", std::nullopt, 0, 1.0}, "pass"), "12");
+    EXPECT_EQ(cell({identity, state, "total", std::nullopt, 0, 1.0}, "ranges"), "");
+    state.ranges = {{1, 3}, {4, 4}, {9, 12}};
+    EXPECT_EQ(cell({identity, state, "total", std::nullopt, 0, 1.0}, "pass"), "8");
+    EXPECT_EQ(cell({identity, state, "total", std::nullopt, 0, 1.0}, "ranges"), "1..3 4..4 9..12");
 }
 
 TEST(Records, WhatDoesNotApplyIsEmpty) {
@@ -63,6 +77,7 @@ TEST(Records, WhatDoesNotApplyIsEmpty) {
                                "step_rule",
                                "emission",
                                "learn_passes",
+                               "light_sequence",
                                "alpha",
                                "k",
                                "radius_rule",
@@ -72,6 +87,8 @@ TEST(Records, WhatDoesNotApplyIsEmpty) {
                                "caustic_k",
                                "caustic_radius",
                                "caustic_max_radius",
+                               "relaxation_steps",
+                               "features",
                                "kernel",
                                "area",
                                "area_lines",
@@ -185,7 +202,7 @@ TEST(Records, NonFinitePixelsAreCountedAndLocated) {
     image.layers[2].pixels[4].y = std::numeric_limits<float>::quiet_NaN();
     Recorder recorder({}, nullptr, folder / "iterations.csv");
     RunState state;
-    state.pass = 7;
+    state.ranges = {{1, 7}};
     recorder.record(state, image);
     EXPECT_EQ(recorder.nonfinite_pixels(), 1u);
     ASSERT_EQ(recorder.first_nonfinite_pixels().size(), 2u);

@@ -114,10 +114,29 @@ TEST_F(Loop, GivesTheRadiusOfEachPixelWithTheImage) {
         for (std::size_t i = 0; i < radii.size(); ++i)
             EXPECT_FLOAT_EQ(image.radius[i], static_cast<float>(radii[i])) << name << ' ' << i;
         EXPECT_GT(*std::max_element(image.radius.begin(), image.radius.end()), 0.0f) << name;
+        EXPECT_TRUE(image.count.empty() && image.density.empty()) << "nobody asked";
     }
     PassLoop path = loop_of({.integrator = "path"}, scene_, hit_points_);
     path.take(1);
     EXPECT_TRUE(path.image().radius.empty());
+}
+
+TEST_F(Loop, GivesWhatPixelsHoldWhereItIsAskedFor) {
+    for (const ScheduleName schedule : {ScheduleName::Hachisuka, ScheduleName::KnausZwicker}) {
+        MethodSettings settings{.integrator = "ppm", .photons_per_pass = 2000};
+        settings.schedule = schedule;
+        PassLoop method(scene_, hit_points_, {{.method = settings, .shows_counts = true}});
+        for (std::uint64_t pass = 1; pass <= 4; ++pass) method.take(pass);
+        const Image image = method.image();
+        ASSERT_EQ(image.count.size(), pixel_count(hit_points_));
+        const bool has_density = schedule == ScheduleName::Hachisuka;  // whose photons are those of the disc
+        ASSERT_EQ(image.density.size(), has_density ? image.count.size() : 0u);
+        EXPECT_GT(*std::max_element(image.count.begin(), image.count.end()), 0.0f);
+        for (std::size_t i = 0; has_density && i < image.count.size(); ++i) {
+            const double area = pi * image.radius[i] * image.radius[i];
+            EXPECT_NEAR(image.density[i] * area, image.count[i], 1e-4 * image.count[i]) << i;
+        }
+    }
 }
 
 TEST_F(Loop, BeginsAtAnyPassOfAMethodWhosePassesAreIndependent) {

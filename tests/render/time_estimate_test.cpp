@@ -42,6 +42,14 @@ protected:
     Scene scene_;
 };
 
+// A coarse view has a share of the pixels, and so have the new points of a pass.
+TEST_F(EstimatedTime, MethodsWithNewPointsAreMeasuredThroughTheCoarseView) {
+    RunSettings settings;
+    settings.method.integrator = "sppm";
+    settings.method.positions = Positions::Box;
+    EXPECT_GT(estimate(settings).seconds, 0.0);
+}
+
 // Work is counted: photons gathered while it is measured. Unbounded, this would be 2 * 10^8 and more of each.
 TEST_F(EstimatedTime, MeasuringIsBoundedWhateverTheRunTakes) {
     RunSettings settings;

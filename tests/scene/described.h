@@ -9,6 +9,7 @@
 
 #include "core/random.h"
 #include "scene/scene.h"
+#include "tests/support/test_stream.h"
 
 namespace photonlab {
 
@@ -61,8 +62,8 @@ inline Vector to_box(const Scene& scene, const VectorD& point) {
     return Vector((point - scene.centre) / scene.unit_length);
 }
 
-inline RandomStream test_stream(std::uint64_t index = 0) {
-    return RandomStream(11, RandomPurpose::Test, 1, index);
+inline RandomStream stream_of_scenes(std::uint64_t index = 0) {
+    return test_stream(index, 11);
 }
 
 }  // namespace photonlab

@@ -71,7 +71,7 @@ TEST_F(LimitsTest, ThousandsOfScenesAreHeldAtATime) {
 /// So many triangles: of a grid, or each from wall to wall.
 MeshDescription many_triangles(std::uint32_t count, bool is_crowded) {
     MeshDescription mesh;
-    RandomStream random = test_stream();
+    RandomStream random = stream_of_scenes();
     for (std::uint32_t i = 0; i < count; ++i) {
         const VectorD corner(i % 100, i / 100, 0.0);
         for (const VectorD& step : {VectorD(0, 0, 0), VectorD(0.5, 0, 0), VectorD(0, 0.5, 0)})

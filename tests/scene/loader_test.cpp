@@ -2,7 +2,7 @@
 // below gets exactly the message beside it.
 
 #include "scene/loader.h"
-#include "scene/shapes/obj.h"
+#include "scene/shapes/meshes/obj.h"
 
 #include <gtest/gtest.h>
 

@@ -54,7 +54,7 @@ TEST(Intersect, NormalsOfAFlippedSphereFaceItsCentre) {
 TEST(Intersect, MeetsASphereWhereTheQuadraticSaysEvenFromFarAway) {
     const Scene scene = build_scene(describe({shape(SphereDescription{{0, 0, 0}, 1.0, false})}));
     const double radius = 0.5;
-    RandomStream random = test_stream();
+    RandomStream random = stream_of_scenes();
     for (const float distance : {0.2f, 1.0f, 10.0f, 1e3f, 1e6f})
         for (int i = 0; i < 5'000; ++i) {
             const Vector origin = random_direction(random) * distance;
@@ -95,7 +95,7 @@ TEST(Intersect, DisksEndAtTheirRim) {
 }
 
 TEST(Intersect, DisksOfEveryInclinationAreFoundFromBothSides) {
-    RandomStream random = test_stream();
+    RandomStream random = stream_of_scenes();
     for (int i = 0; i < 100; ++i) {
         const VectorD normal = i == 0   ? VectorD(0, 0, 1)
                                : i == 1 ? VectorD(0, 1, 0)
@@ -120,7 +120,7 @@ TEST(Intersect, DisksOfEveryInclinationAreFoundFromBothSides) {
 
 TEST(Intersect, MeetsACubeOnItsFacesWithNormalsOutwards) {
     const Scene scene = build_scene(describe({shape(cube({5, 6, 7}, 2.0))}));
-    RandomStream random = test_stream();
+    RandomStream random = stream_of_scenes();
     for (int i = 0; i < 10'000; ++i) {
         const bool from_inside = i % 2 == 0;
         const Vector target(random.next() - 0.5f, random.next() - 0.5f, random.next() - 0.5f);
@@ -173,7 +173,7 @@ TEST(Intersect, TrianglesWithoutAreaNeverGiveANormalThatIsNotANumber) {
     mesh.positions.insert(mesh.positions.end(), {{-1, 0, 1}, {1, 0, 1}, {3, 0, 1}});
     mesh.triangles.insert(mesh.triangles.end(), {{4, 5, 6}, {4, 4, 4}, {4, 5, 5}});
     const Scene scene = build_scene(describe({shape(mesh)}));
-    RandomStream random = test_stream();
+    RandomStream random = stream_of_scenes();
     for (int i = 0; i < 10'000; ++i) {
         const Vector origin(random.next() - 0.5f, random.next() - 0.5f, 0.5f);
         const Vector on_sliver = to_box(scene, {4.0 * random.next() - 1.0, 0, 1});
@@ -200,7 +200,7 @@ TEST(Intersect, NothingEscapesAClosedBoxOrSphere) {
     const Scene box = build_scene(describe(walls));
     const Scene mesh = build_scene(describe({shape(inside_out)}));
     const Scene ball = build_scene(describe({shape(SphereDescription{{0, 0, 0}, 1.0, true})}));
-    RandomStream random = test_stream();
+    RandomStream random = stream_of_scenes();
     for (const Scene* scene : {&box, &mesh, &ball})
         for (int i = 0; i < 100'000; ++i) {
             const auto hit = intersect(*scene, {{0.1f, -0.2f, 0.05f}, random_direction(random)});
@@ -230,7 +230,7 @@ TEST(IsOccluded, SeesWhatLiesBetweenAndNothingBeyond) {
 TEST(IsOccluded, PointsMovedOffTwoWallsThatFaceEachOtherSeeEachOther) {
     const Scene scene = build_scene(
         describe({shape(square({0, 0, -1}, {1, 0, 0}, {0, 1, 0})), shape(square({0, 0, 1}, {-1, 0, 0}, {0, 1, 0}))}));
-    RandomStream random = test_stream();
+    RandomStream random = stream_of_scenes();
     for (int i = 0; i < 20'000; ++i) {
         const Vector below(random.next() - 0.5f, random.next() - 0.5f, -0.5f);
         const Vector above(random.next() - 0.5f, random.next() - 0.5f, 0.5f);

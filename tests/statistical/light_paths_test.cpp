@@ -14,7 +14,7 @@
 #include "tests/statistical/scenes.h"
 #include "tests/statistical/significance.h"
 #include "tests/support/test_folder.h"
-#include "transport/light_path.h"
+#include "transport/light/light_path.h"
 
 namespace photonlab::test {
 namespace {
@@ -110,6 +110,16 @@ TEST(AdaptiveEmission, IsUnbiasedWhileItLearns) {
                        0.01);
 }
 
+/// An image of the sky around an open room: dim, but for pixels 22 degrees above the horizon in these columns of 16.
+/// The first is where the room is open, the ninth behind its back wall.
+EnvironmentMapDescription sky(const std::vector<int>& bright_columns) {
+    ColorImage image{16, 9, std::vector<Color>(16 * 9, Color(0.02f, 0.03f, 0.04f))};
+    for (const int column : bright_columns)
+        image.pixels[3 * 16 + static_cast<std::size_t>(column)] = Color(30.0f, 20.0f, 10.0f);
+    return {.image = std::make_shared<const EnvironmentImage>(image, EnvironmentImage::Rows::FromPoleToPole),
+            .place = "test"};
+}
+
 // Every kind of light learns, whatever its squares mean, and gives what plain emission gives.
 TEST(AdaptiveEmission, OfEveryKindOfLightHasTheMeanOfPlainEmission) {
     const auto texture =
@@ -125,6 +135,7 @@ TEST(AdaptiveEmission, OfEveryKindOfLightHasTheMeanOfPlainEmission) {
                                  .place = "test"}},
         {"directional", DirectionalDescription{VectorD(0.2, -0.4, 1.0).normalized(), ColorD(3.0), "test"}},
         {"constant", ConstantDescription{ColorD(1.0), "test"}},
+        {"envmap", sky({0})},
     };
     ClaimFamily claims;
     for (const auto& [name, light] : lights) {
@@ -139,6 +150,71 @@ TEST(AdaptiveEmission, OfEveryKindOfLightHasTheMeanOfPlainEmission) {
         const std::vector<double> learnt = radiances(scene, adaptive(method), 8, 60, 1000);
         claims.means_agree(name, learnt, plain, 0.02);
     }
+}
+
+Scene room_under(EnvironmentMapDescription image) {
+    SceneDescription description = room(8, 8);
+    for (ShapeDescription& shape : description.shapes) shape.radiance.reset();
+    description.lights = {std::move(image)};
+    return build_scene(description);
+}
+
+MethodSettings by_all_photons(std::uint64_t photons) {
+    return {.schedule = ScheduleName::KnausZwicker,
+            .radius = 0.3,
+            .direct = DirectMode::Photons,
+            .photons_per_pass = photons};
+}
+
+/// A map that found these rows of cells alone, of the scene's one light.
+EmissionMap map_of_rows(const Scene& scene, std::uint32_t first, std::uint32_t last) {
+    EmissionMap map(scene);
+    std::vector<std::uint32_t> cells;
+    for (std::uint32_t cell = 0; cell < map.cell_count(); ++cell)
+        if (const std::uint32_t row = cell / EmissionMap::cells_per_side; row >= first && row <= last)
+            cells.push_back(cell);
+    map.learn({cells, std::vector<std::uint64_t>(cells.size(), 1)});
+    return map;
+}
+
+// Nearly all of the square belongs to one bright pixel. Densities that prefer its upper or its lower rows would be off
+// by a quarter without their weights.
+TEST(AdaptiveEmission, OfASkyWithABrightPixelIsUnbiasedWithAnyDensity) {
+    const Scene scene = room_under(sky({0}));
+    ASSERT_EQ(scene.emitters.size(), 1u);
+    const HitPoints hit_points = trace_hit_points(scene, 1, 1);
+    const std::vector<double> plain = radiances(scene, by_all_photons(1000), 4, 100, 1000);
+    const std::vector<std::pair<std::string, EmissionMap>> maps{{"upper rows", map_of_rows(scene, 0, 3)},
+                                                                {"lower rows", map_of_rows(scene, 12, 15)},
+                                                                {"chance", random_map(scene, 1)}};
+    ClaimFamily claims;
+    for (const auto& [name, map] : maps) {
+        std::vector<double> values;
+        for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+            PassLoop loop = loop_of(adaptive(by_all_photons(1000)), scene, hit_points, {.seed = seed});
+            loop.freeze_emission(map);
+            for (std::uint64_t pass = 1; pass <= 4; ++pass) loop.take(pass);
+            values.push_back(mean_of(loop.image(), gathered_layer).x);
+        }
+        claims.means_agree(name, values, plain, 0.015);
+    }
+    claims.means_agree("learnt", radiances(scene, adaptive(by_all_photons(1000)), 4, 100), plain, 0.015);
+}
+
+// Of two bright pixels of the same power one shines into the room. Plain emission sends half of its paths there, the
+// half that is learnt goes all there: three quarters, so one and a half times as many are seen, but for the dim
+// rest.
+TEST(AdaptiveEmission, OfASkyFindsThePixelThatShinesIntoTheRoom) {
+    const Scene scene = room_under(sky({0, 8}));
+    const HitPoints hit_points = trace_hit_points(scene, 1, 1);
+    MethodSettings method = adaptive(by_all_photons(100'000));
+    method.alpha = 1.0;  // discs that shrink see less
+    PassLoop loop = loop_of(method, scene, hit_points);
+    loop.take(1);
+    const double plain = *loop.state(0).paths_seen;
+    for (std::uint64_t pass = 2; pass <= 5; ++pass) loop.take(pass);
+    const double learnt = *loop.state(0).paths_seen;
+    EXPECT_NEAR(learnt / plain, 1.5, 0.08) << plain << ", then " << learnt;  // 4.5 standard errors and the dim rest
 }
 
 // The flux that leaves adds up, whatever the density and the kind of light.

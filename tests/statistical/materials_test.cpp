@@ -162,5 +162,68 @@ TEST(RoomOfRoughAndLayeredBalls, IsTheSameByPhotonsAndByPaths) {
     claims.means_agree("gathered", ppm.gathered, path.gathered, 0.01, 0.015);
 }
 
+// One point of a floor that is brushed at 30 degrees to the axes, lit so that its facets must lean along u, where they
+// do: f of the directions in the frame of u, times cosine and intensity over the squared distance. Along v it would be
+// a hundredth. Photons within 0.15 of the point arrive from directions that change f by 0.3%.
+TEST(BrushedFloor, ShinesAlongUByEveryWayOfGathering) {
+    const RoughConductor metal{.facets = {FacetSlopes::Beckmann, 0.6f, 0.2f}};
+    const VectorD along_u(std::cos(pi / 6.0), 0.0, -std::sin(pi / 6.0));
+    const VectorD along_v = VectorD(0, 1, 0).cross(along_u);
+    const VectorD light = along_u * 3.6 + VectorD(0, 4, 0);
+    const VectorD eye = along_u * 0.6 + VectorD(0, 3, 0);
+    SceneDescription description;
+    description.materials = {anisotropic(metal)};
+    MeshDescription floor = parallelogram((along_u + along_v) * -10.0, along_u * 20.0, along_v * 20.0);
+    floor.texture_coordinates = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    description.shapes = {shape(floor, 0)};
+    description.lights = {point_light(light, ColorD(100.0))};
+    description.camera = look_at(eye, VectorD(0.0));
+    const Scene scene = build_scene(description);
+    const auto local = [&](const VectorD& v) {
+        const VectorD unit = v.normalized();
+        return Vector(VectorD(unit.dot(along_u), unit.dot(along_v), unit.y));
+    };
+    const double f = evaluate(Bsdf(metal), local(eye), local(light)).y;
+    const double expected = f * 100.0 * light.normalized().y / light.length2();
+    ClaimFamily claims;
+    claims.mean_is("path", totals(scene, {.integrator = "path"}, 1), expected, 1e-4);
+    claims.mean_is("ppm", totals(scene, {.radius = 0.15, .photons_per_pass = 10}, 1), expected, 1e-4);
+    claims.mean_is("ppm with photons",
+                   totals(scene, {.radius = 0.15, .direct = DirectMode::Photons, .photons_per_pass = 100'000}, 8),
+                   expected, 0.1, 0.003);
+}
+
+/// Balls and a plate of metal and glass that are brushed, and a coat over such metal.
+SceneDescription room_of_brushed_things() {
+    SceneDescription description = room(40, 40);
+    const RoughConductor metal{.facets = {FacetSlopes::Ggx, 0.6f, 0.12f}, .eta = Color(0.2f), .k = Color(3.9f)};
+    const RoughDielectric glass{.facets = {FacetSlopes::Beckmann, 0.15f, 0.5f}};
+    Material coat = coated(anisotropic(metal), Color(0.2f));
+    coat.is_anisotropic = true;
+    for (const Material& material : {anisotropic(metal), anisotropic(glass), coat}) {
+        const auto i = static_cast<double>(description.materials.size() - 5);
+        description.materials.push_back(material);
+        description.shapes.push_back(
+            sphere(VectorD(-0.6 + 0.5 * i, -0.6, 0.3), 0.3, false, description.materials.size() - 1));
+    }
+    MeshDescription plate = parallelogram(VectorD(-0.8, -0.1, 0.9), VectorD(0.4, 0.8, 0), VectorD(0.8, -0.2, 0));
+    plate.texture_coordinates = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    description.shapes.push_back(shape(plate, 5));
+    return description;
+}
+
+// A frame that a hit point lost, or that light and view see differently, changes what is gathered: on these things the
+// lobe is five times as long as it is wide.
+TEST(RoomOfBrushedThings, IsTheSameByPhotonsAndByPaths) {
+    const Scene scene = build_scene(room_of_brushed_things());
+    const HitPoints points = trace_hit_points(scene, 1, 1);
+    ClaimFamily claims;
+    const LayerMeans path = layer_means(scene, points, {.integrator = "path"}, 128);
+    const LayerMeans ppm =
+        layer_means(scene, points, {.radius = 0.02, .direct_samples = 4, .photons_per_pass = 20'000}, 24);
+    claims.means_agree("direct", ppm.direct, path.direct, 0.01);
+    claims.means_agree("gathered", ppm.gathered, path.gathered, 0.01, 0.015);
+}
+
 }  // namespace
 }  // namespace photonlab::test

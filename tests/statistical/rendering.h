@@ -7,8 +7,8 @@
 
 #include "integrators/registry.h"
 #include "render/pass_loop.h"
-#include "transport/camera_pass.h"
-#include "transport/photons.h"
+#include "transport/camera/camera_pass.h"
+#include "transport/light/photons.h"
 
 namespace photonlab::test {
 

@@ -12,11 +12,18 @@
 namespace photonlab {
 
 inline Material rough_plastic(const Microfacets& facets, const Color& diffuse, bool nonlinear = false) {
-    const auto coat = std::make_shared<const RoughCoat>(make_rough_coat(facets, 1.49, false));
-    RoughPlastic plastic{.facets = facets, .coat = coat.get(), .nonlinear = nonlinear, .diffuse_reflectance = diffuse};
+    const auto coats =
+        std::make_shared<const RoughCoats>(make_rough_coats(facets.slopes, Imath::V2f(facets.alpha_u), 1.49, false));
+    RoughPlastic plastic{
+        .facets = facets, .diffuse_reflectance = diffuse, .coats = coats.get(), .nonlinear = nonlinear};
     Material material{.id = "rough plastic", .bsdf = plastic};
-    material.data = coat;
+    material.data = coats;
     return material;
+}
+
+/// Metal or glass whose roughness depends on the direction.
+inline Material anisotropic(const Bsdf& bsdf) {
+    return {.id = "anisotropic", .bsdf = bsdf, .is_anisotropic = true};
 }
 
 inline Plastic plastic_of(const Color& diffuse, bool nonlinear = false) {

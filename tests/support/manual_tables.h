@@ -15,7 +15,7 @@
 #include <string>
 
 #include "integrators/registry.h"
-#include "integrators/settings_table.h"
+#include "integrators/settings/settings_table.h"
 #include "record/columns.h"
 
 namespace photonlab {

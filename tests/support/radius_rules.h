@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "integrators/settings.h"
+#include "integrators/settings/settings.h"
 
 namespace photonlab::test {
 

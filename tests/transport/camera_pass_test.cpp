@@ -84,6 +84,32 @@ TEST(HitPoints, TakeTwentyBytesEachWhereTheyAreLikeTheirNeighbours) {
     EXPECT_LT(hit_points.points.bytes(), 21u * 160 * 160);
 }
 
+// Where roughness depends on the direction a hit point knows the frame in which the path saw it, in four bytes more.
+TEST(HitPoints, KnowTheirFrameWhereAMaterialAsksForIt) {
+    SceneDescription description = floor_from_above(40, 40);
+    std::uint64_t bytes[2];
+    for (const bool is_anisotropic : {false, true}) {
+        description.materials[0] = {
+            .id = "metal",
+            .bsdf = RoughConductor{.facets = {FacetSlopes::Ggx, 0.3f, is_anisotropic ? 0.1f : 0.3f}},
+            .is_anisotropic = is_anisotropic};
+        const Scene scene = build_scene(description);
+        const HitPoints hit_points = trace_hit_points(scene, 1, 1);
+        bytes[is_anisotropic ? 1 : 0] = hit_points.points.bytes();
+        ASSERT_EQ(hit_points.points.size(), 1600u);
+        for (const HitPoint point : hit_points.points) {
+            const Frame frame = surface_at(scene, point).frame;
+            const Vector above = point.position + point.geometric_normal;
+            const auto hit = intersect(scene, {above, -point.geometric_normal});
+            ASSERT_TRUE(hit);
+            const Frame seen = orient(scene, *hit, point.geometric_normal)->frame;
+            EXPECT_NEAR((frame.tangent - seen.tangent).length(), 0.0, 1e-4);
+            EXPECT_NEAR((frame.bitangent - seen.bitangent).length(), 0.0, 1e-4);
+        }
+    }
+    EXPECT_EQ(bytes[1], bytes[0] + 4u * 1600);
+}
+
 TEST(HitPoints, SeeALightFromItsFrontAlone) {
     for (const double side : {1.0, -1.0}) {
         SceneDescription description = floor_from_above(4, 4);

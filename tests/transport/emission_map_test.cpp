@@ -1,6 +1,6 @@
 // The learnt density of emission: what holds of it whatever was learnt.
 
-#include "transport/emission_map.h"
+#include "transport/light/emission_map.h"
 
 #include <gtest/gtest.h>
 

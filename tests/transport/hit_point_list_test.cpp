@@ -1,6 +1,6 @@
 // The packed list: what goes in comes out, whatever is shared and whatever is left out.
 
-#include "transport/hit_point_list.h"
+#include "transport/camera/hit_point_list.h"
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,8 @@ std::vector<HitPoint> assorted_points() {
                        .pixel = i / 3,
                        .material = static_cast<std::uint16_t>(i % 50 == 7 ? 65'535 : 2),
                        .camera_edges = static_cast<std::uint16_t>(i % 5 == 0 ? 10'000 : 1),
-                       .texture_coordinate = Imath::V2f(static_cast<float>(i), 0.5f)};
+                       .texture_coordinate = Imath::V2f(static_cast<float>(i), 0.5f),
+                       .turn = 0.01f * static_cast<float>(i)};
         if (i % 7 == 3) point.geometric_normal = Vector(0.0f, 0.6f, static_cast<float>(i));
         if (i % 11 == 4) point.normal = Vector(static_cast<float>(i), 0.6f, 0.8f);
         if (i % 13 == 6) point.weight = Color(0.25f, 0.25f, 0.125f);
@@ -34,7 +35,7 @@ std::vector<HitPoint> assorted_points() {
 TEST(HitPointList, GivesBackWhatItWasGiven) {
     const std::vector<HitPoint> points = assorted_points();
     for (const HitPointList::Kept kept :
-         {HitPointList::Kept{false, false}, {false, true}, {true, false}, {true, true}}) {
+         {HitPointList::Kept{false, false, false}, {false, true, false}, {true, false, true}, {true, true, true}}) {
         HitPointList first(0.25f, kept);
         HitPointList list(0.25f, kept);
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -55,6 +56,7 @@ TEST(HitPointList, GivesBackWhatItWasGiven) {
             EXPECT_EQ(point.pixel, given.pixel);
             EXPECT_EQ(point.material, given.material);
             EXPECT_EQ(point.camera_edges, given.camera_edges);
+            EXPECT_EQ(point.turn, kept.turns ? given.turn : 0.0f);
             EXPECT_EQ(point.texture_coordinate, kept.texture_coordinates ? given.texture_coordinate : Imath::V2f(0.0f));
             ++i;
         }

@@ -1,6 +1,6 @@
 // What a scene lets the program leave out, as `photonlab info` says it.
 
-#include "transport/left_out.h"
+#include "transport/camera/left_out.h"
 
 #include <gtest/gtest.h>
 
@@ -23,6 +23,7 @@ TEST(LeftOut, IsAllThatADiffuseSceneWithoutTexturesDoesNotNeed) {
     EXPECT_NE(left_out.find("(photonmapper: 12 bytes)"), std::string::npos);
     EXPECT_NE(left_out.find("no textures"), std::string::npos);
     EXPECT_NE(left_out.find("diffuse surfaces alone"), std::string::npos);
+    EXPECT_NE(left_out.find("no turn of hit points' frames (4 bytes)"), std::string::npos);
 }
 
 TEST(LeftOut, IsNothingThatAMirrorATextureOrAShineNeeds) {
@@ -38,6 +39,10 @@ TEST(LeftOut, IsNothingThatAMirrorATextureOrAShineNeeds) {
     scene.materials.push_back({.id = "shiny", .bsdf = Merl{table.get()}, .data = table});
     scene.shapes.push_back(disk({0, 60, 0}, {0, 1, 0}, 1.0, scene.materials.size() - 1));
     EXPECT_EQ(left_out_of(scene).find("diffuse surfaces alone"), std::string::npos);
+    scene.materials.push_back(
+        {.id = "brushed", .bsdf = RoughConductor{.facets = {FacetSlopes::Ggx, 0.3f, 0.1f}}, .is_anisotropic = true});
+    scene.shapes.push_back(disk({0, 70, 0}, {0, 1, 0}, 1.0, scene.materials.size() - 1));
+    EXPECT_EQ(left_out_of(scene).find("no turn"), std::string::npos);
 }
 
 }  // namespace

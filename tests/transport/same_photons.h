@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "transport/photons.h"
+#include "transport/light/photons.h"
 
 namespace photonlab::test {
 

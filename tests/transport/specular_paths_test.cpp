@@ -9,7 +9,7 @@
 #include <cstring>
 #include <functional>
 
-#include "scene/materials/dielectric.h"
+#include "scene/materials/smooth/dielectric.h"
 #include "tests/statistical/rendering.h"
 #include "tests/statistical/scenes.h"
 #include "tests/transport/same_photons.h"

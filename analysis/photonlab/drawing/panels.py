@@ -19,9 +19,10 @@ def filled(grid, items):
     return zip(grid.flat, items)
 
 
-def panels_over_legend(rows, columns, handles, caption, panel_height=1.75):
+def panels_over_legend(rows, columns, handles, caption, panel_height=1.75, same_heights=True):
     """A figure and its grid of axes, with what all share below it: the legend, then the caption in small print. Panels of a row share
-    their vertical axis. In a narrow figure the panels of a row stand below each other, and the grid is the same."""
+    their vertical axis, unless their heights mean different things. In a narrow figure the panels of a row stand below each other, and
+    the grid is the same."""
     width = style.width()
     stacked = width < NARROW and columns > 1
     shape = (rows * columns, 1) if stacked else (rows, columns)
@@ -31,9 +32,11 @@ def panels_over_legend(rows, columns, handles, caption, panel_height=1.75):
     caption_lines = text.wrapped(caption, width - margin - 0.06, small) if caption else []
     below = legend + text.height_of(caption_lines, small) + 0.12
     height = shape[0] * (TOP + panel_height + AXIS_LABELS) + below
-    figure, grid = pyplot.subplots(*shape, figsize=(width, height), sharey=False if stacked else "row", squeeze=False)
+    sharey = "row" if same_heights and not stacked else False
+    figure, grid = pyplot.subplots(*shape, figsize=(width, height), sharey=sharey, squeeze=False)
     figure.subplots_adjust(left=LEFT / width, right=1 - RIGHT / width, top=1 - TOP / height, bottom=(below + AXIS_LABELS) / height,
-                           hspace=(TOP + AXIS_LABELS) / panel_height, wspace=GAP)
+                           hspace=(TOP + AXIS_LABELS) / panel_height,
+                           wspace=GAP if same_heights else LEFT * columns / (width - LEFT - RIGHT - LEFT * (columns - 1)))
     figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(margin / width, below / height), ncol=legend_columns,
                   borderaxespad=0, borderpad=0, handlelength=HANDLE, handletextpad=SPACING["handle"],
                   columnspacing=SPACING["column"], labelspacing=SPACING["label"])

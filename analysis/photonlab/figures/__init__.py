@@ -3,12 +3,12 @@ which all are drawn."""
 
 from photonlab.command import options_of
 from photonlab.drawing.saving import Drawn
-from photonlab.figures import (best_alpha, bias_variance, calibration, convergence, emission, equal_error, equal_time, extremes, gallery,
-                               grid, light_paths, memory, methods, probes, radii, scaling, spectrum, strip, time_to_error, tradeoff)
+from photonlab.figures import (best_alpha, bias_variance, calibration, convergence, deviations, emission, equal_error, equal_time, extremes,
+                               gallery, grid, light_paths, memory, methods, probes, radii, regions, relaxation, scaling, spectrum, strip, time_to_error, tradeoff)
 from photonlab.records.files import InputError
 
-MODULES = [convergence, strip, gallery, bias_variance, spectrum, memory, best_alpha, methods, radii, calibration, light_paths, emission, grid,
-           equal_time, equal_error, time_to_error, tradeoff, probes, scaling, extremes]
+MODULES = [convergence, strip, gallery, bias_variance, spectrum, memory, best_alpha, methods, regions, radii, calibration, light_paths, emission,
+           grid, equal_time, equal_error, time_to_error, tradeoff, probes, scaling, extremes, deviations, relaxation]
 
 
 def of(kind, results, *, width=None, style=None, scenes=None, methods=None, **options):

@@ -2,7 +2,7 @@
 named region, and a row for each set of settings that the sweep of alphas was repeated with (an initial radius, say).
 
 The line is the best alpha after each recorded pass, against the light paths emitted so far. The band holds the candidates: all
-alphas that win at least 5% of the draws when groups of seeds are drawn anew (`analysis fits` writes best-alphas.csv, which is
+alphas that win at least 5% of the draws when groups of seeds are drawn anew (`photonlab analyse fits` writes best-alphas.csv, which is
 read here). Where that is all of them, as after the first pass, when all alphas are the same image, the line has a gap.
 
 Where the reference has it, gathered light is drawn; otherwise the whole picture.

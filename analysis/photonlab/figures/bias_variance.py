@@ -1,5 +1,5 @@
 """Draws how variance, squared bias and MSE fall with the passes, with the photons or with the seconds, a figure per scene: a
-row for the whole image and for each named region, a line per method. `analysis decomposition` writes
+row for the whole image and for each named region, a line per method. `photonlab analyse decomposition` writes
 decomposition.csv, which is read here.
 
 Bands are 1.96 standard errors to both sides: 95% where errors are Gaussian. Thin lines are what theory predicts for these passes
@@ -61,7 +61,7 @@ def theory_of(recorded_rows, rows, component, region):
     first, last = slopes.default_window(rows["pass"].astype(int))
     predicted = theory.predictions(recorded_rows, component, last)
     at_first = rows[(rows["pass"] == first) & (rows["region"] == region) & (rows["component"] == component)]
-    # Of the whole picture with direct light by shadow rays it is a sum, which `analysis fits` predicts and this does not draw.
+    # Of the whole picture with direct light by shadow rays it is a sum, which `photonlab analyse fits` predicts and this does not draw.
     is_mixed = component == "total" and (rows["component"] == "direct").any()
     if not predicted or at_first.empty or is_mixed:
         return [], {}
@@ -215,7 +215,7 @@ def make(results, options):
     unknown = set(rows["point"]) - points
     if unknown:
         raise InputError(f"{results.folder / decomposition.NAME}: {min(unknown)} is not in iterations.csv; run "
-                         "`analysis decomposition` again")
+                         "`photonlab analyse decomposition` again")
     of_scene = {scene.scene: scene for scene in results.scenes()}
     extra = ("-roots" if options.roots else "") + (f"-{options.against}" if options.against != "passes" else "")
     for component in options.components:

@@ -5,7 +5,7 @@ axes, where curves are nearly straight. Errors are means over seeds of the unbia
 records, which hold passes alone. Nothing is extrapolated: a budget before a method's first pass or after its last has no error,
 and the table says which ("less than one pass", "more than recorded"). "not resolved" is an error that came out at 0 or below.
 
-The table has the whole image, and where decomposition.csv is there (`analysis decomposition`) also the experiment's named regions. The
+The table has the whole image, and where decomposition.csv is there (`photonlab analyse decomposition`) also the experiment's named regions. The
 pictures are those of the recorded pass that is nearest to the budget, of one seed; under each stand the pass, the time and the error
 that this picture has. Below them are the regions, or without any the square with the most contrast, or those of --inset, each exposed
 for itself.

@@ -27,7 +27,8 @@ def read_probes(results):
     file = results.folder / "probes.csv"
     if not files.is_there(file):
         raise InputError(f"{file}: is not there; expected an experiment with probes")
-    rows = tables.table_in(file, records.read_merged(results.folder, file.name)[0])
+    with records.opened_merged(results.folder, file.name) as (stream, _, _):
+        rows = tables.table_in(file, stream)
     tables.require_columns(file, rows, COLUMNS, f"expected those of schema {records.SCHEMA}")
     for column in NUMBERS:
         rows[column] = tables.to_numbers(file, rows[column])

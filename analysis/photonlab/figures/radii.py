@@ -32,13 +32,10 @@ def shown_methods(scene, all_methods):
     """All; or of each kind the first that begins with the radius that most methods begin with, or with another."""
     if all_methods:
         return scene.labels
-    first_rows = scene.rows.drop_duplicates("method").set_index("method")
-    common = first_rows["footprints"].value_counts().idxmax()
-    ordered = sorted(scene.labels, key=lambda label: first_rows.loc[label, "footprints"] != common)
-    of_kind = {}
-    for label in ordered:
-        of_kind.setdefault(methods.kind_of(first_rows.loc[label], scene.columns), label)
-    return [label for label in scene.labels if label in of_kind.values()]
+    footprints = scene.rows.drop_duplicates("method").set_index("method")["footprints"]
+    common = footprints.value_counts().idxmax()
+    shown = methods.best_of_each_kind(scene, scene.labels, lambda label: footprints[label] != common)
+    return [label for label in scene.labels if label in shown]
 
 
 def collect(scene, all_methods):

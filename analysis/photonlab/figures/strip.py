@@ -1,5 +1,5 @@
 """Draws what the numbers of a run look like: for every scene the images of PM, of PPM and of the reference side by
-side, and under each how it differs from the reference.
+side, and under each how it differs from the reference. Of each kind it is the method that ended with the least error.
 
 Differences keep their sign, so that bias (a region all of one colour) can be told from noise (both colours mixed). They
 share one scale. Under each image are its pass and its RMSE from iterations.csv: unbiased where the reference has two
@@ -50,10 +50,20 @@ def chosen_pass(passes_of_methods, wanted):
     return max(common) if common else None
 
 
+def errors_at_end(scene, component):
+    """{label: mean over seeds of the squared error after the last pass that all of them recorded}, of what has one."""
+    found = {}
+    for label, rows in scene.rows[(scene.rows["component"] == component) & scene.rows["mse"].notna()].groupby("method"):
+        last = errors.last_pass(rows)
+        if len(last):
+            found[label] = last[errors.error_column(last)].mean()
+    return found
+
+
 def collect(scene, component, options):
     """What there is to draw of the records of one scene."""
     found, strip = {}, Strip()
-    for label in methods.shown_methods(scene, options.alpha, options.all or scene.is_part):
+    for label in methods.shown_methods(scene, options.alpha, options.all or scene.is_part, errors_at_end(scene, component)):
         rows = methods.run_of(scene, label, options.seed)
         run = None if rows is None else scene.run(rows["run"].iloc[0])
         if run and run.snapshots:
@@ -162,8 +172,8 @@ def add_options(parser):
                         help="pass to show (default: the last one that all methods have)")
     parser.add_argument("--seed", type=int, metavar="S", help="seed to show (default: each method's lowest)")
     parser.add_argument("--alpha", type=positive, nargs="+", default=[], metavar="A",
-                        help="alphas to show of methods that have one (default: the lowest)")
-    parser.add_argument("--all", action="store_true", help="show every method, not the first one of each kind")
+                        help="alphas to show of methods that have one (default: the best)")
+    parser.add_argument("--all", action="store_true", help="show every method, not the best one of each kind")
     parser.add_argument("--components", choices=records.COMPONENTS, nargs="+", default=["total"],
                         help="which light, a figure each (default: total)")
     parser.add_argument("--exposure", type=positive, metavar="E",

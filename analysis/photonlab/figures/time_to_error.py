@@ -6,10 +6,10 @@ threshold. A seed that is there at its first pass already took "at most" that pa
 note says for how many. A method is given the mean over its seeds with its standard error, and none if a seed never got there:
 "more than the budget", with the time that was spent as `budget`.
 
-relMSE is taken against the mean of the reference's halves. The noise of that mean is in it and cannot be subtracted, as it can
-from MSE: no method comes below the mean of its variance / (r^2 + 0.01), which is at most `reference_floor` / 0.01 (that of a black
-picture). This is the column `floor_bound`. Where it is a tenth of a threshold or more, times may be too long by the noise, and
-the note says so.
+relMSE is taken with both halves of the reference, so that its noise is not in it (`relmse_unbiased`, docs/theory.md, section 3);
+the column `error` says so. Where a reference has no halves, or records are older, it is taken against the mean: then no method comes
+below the mean of that mean's variance / (r^2 + 0.01), which is at most `reference_floor` / 0.01 (that of a black picture). This is
+the column `floor_bound`. Where it is a tenth of a threshold or more, times may be too long by the noise, and the note says so.
 """
 
 from matplotlib import lines
@@ -19,7 +19,7 @@ from photonlab.drawing import style
 from photonlab.drawing.panels import name_row, panels_over_legend, set_titles
 from photonlab.drawing.saving import Drawn
 from photonlab.records import tables
-from photonlab.statistics.time_to_error import CLOCKS, COLUMNS, NAME, table_of
+from photonlab.statistics.time_to_error import CLOCKS, COLUMNS, NAME, WITH_NOISE, table_of
 
 
 @style.drawn
@@ -36,7 +36,7 @@ def draw(results, table):
     handles = [lines.Line2D([], [], label=label, **styles[label]) for label in labels]
     figure, grid = panels_over_legend(
         len(scenes), len(CLOCKS), handles, "Whole picture. Means over seeds with standard errors; arrows: more than the budget, "
-        "which is where they start. relMSE holds the reference's noise.")
+        f"which is where they start. relMSE {'holds' if WITH_NOISE in {row['error'] for row in whole} else 'without'} the reference's noise.")
     thresholds = [row["threshold"] for row in whole]
     for scene, panels in zip(scenes, grid):
         of_scene = [row for row in whole if row["scene"] == scene]

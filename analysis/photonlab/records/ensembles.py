@@ -39,6 +39,9 @@ class Ensemble:
         return sum(layers[part] for part in parts)
 
 
+REST = "-rest"    # of a layer: what the nearest float leaves of its sum
+
+
 def read_slot(file, key):
     """(seeds, {layer: mean over them}) of one file of sums. `key` is that of the sums beside it, if they have checksums; None where
     they have none."""
@@ -56,9 +59,13 @@ def read_slot(file, key):
             places.setdefault(layer, {})[channel] = index
     if not all(set(channels) == set("RGB") for channels in places.values()):
         raise InputError(f"{file}: expected the channels R, G and B of each layer")
+    sums = {layer: pixels[:, :, [channels[channel] for channel in "RGB"]].astype(numpy.float64)
+            for layer, channels in places.items()}
+    rests = {layer.removesuffix(REST): sums.pop(layer) for layer in list(sums) if layer.endswith(REST)}
+    if not rests.keys() <= sums.keys():
+        raise InputError(f"{file}: expected with each layer of rests that of its sums")
     return [int(seed) for seed in seeds], {
-        layer: pixels[:, :, [channels[channel] for channel in "RGB"]].astype(numpy.float64) / len(seeds)
-        for layer, channels in places.items()}
+        layer: (pixels_of_layer + rests.get(layer, 0.0)) / len(seeds) for layer, pixels_of_layer in sums.items()}
 
 
 def are_whole(numbers):

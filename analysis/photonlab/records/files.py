@@ -57,6 +57,14 @@ def read_bytes(file):
             raise InputError(f"{file}: cannot be read: {reason(error)}") from error
 
 
+def read_piece(file, stream, size):
+    """The next bytes of a file by the stream that `opened` gives, at most so many."""
+    try:
+        return stream.read(size)
+    except OSError as error:
+        raise InputError(f"{file}: cannot be read: {reason(error)}") from error
+
+
 def read_text(file):
     return text_in(file, read_bytes(file))
 

@@ -28,11 +28,16 @@ def running_hash(start):
     return xxhash.xxh3_128(start)
 
 
-def hash_of_stream(stream):
+def hash_of_stream(file, stream):
     hashed = running_hash(b"")
-    while piece := stream.read(PIECE):
+    while piece := files.read_piece(file, stream, PIECE):
         hashed.update(piece)
     return hashed.hexdigest()
+
+
+def hash_of_file(file):
+    with files.opened(file) as stream:
+        return hash_of_stream(file, stream)
 
 
 @dataclass(frozen=True)
@@ -65,7 +70,7 @@ def opened(file):
             size = os.fstat(stream.fileno()).st_size
             if file.size not in [None, size]:
                 raise InputError(f"{file}: has {size} bytes, and had {file.size} when it was written; {file.advice}")
-            if hash_of_stream(stream) != file.hash:
+            if hash_of_stream(file, stream) != file.hash:
                 raise InputError(f"{file}: is not what was written: its checksum is another; {file.advice}")
             stream.seek(0)
         yield stream

@@ -5,6 +5,7 @@ no result and may be another after a night on another machine.
 """
 
 import itertools
+import math
 import re
 
 import pandas
@@ -60,7 +61,8 @@ def kind_of(row, columns):
 def method_labels(rows, columns):
     """A label for each row; rows of one scene have the same one only where they are of the same method."""
     settings = settings_of(rows, columns)
-    found = rows[["scene", *settings, GIVEN]].drop_duplicates()
+    runs = rows.drop_duplicates("run")[["run", "scene", *settings, GIVEN]]    # whose rows have the same ones
+    found = runs.drop(columns="run").drop_duplicates()
     labels = pandas.Series("", index=found.index)
     for name, own in found.groupby(GIVEN):
         if name == "":
@@ -73,7 +75,8 @@ def method_labels(rows, columns):
             differing = [name for name in [*settings, GIVEN] if own[name].nunique() > 1]
             told = own[differing].apply(lambda row: ", ".join(f"{name} = {text}" for name, text in row.items() if text), axis=1)
             labels[own.index] = labels[own.index] + [f" ({text or 'unnamed'})" for text in told]
-    return rows.merge(found.assign(label=labels), on=["scene", *settings, GIVEN], how="left")["label"].to_numpy()
+    labelled = runs.merge(found.assign(label=labels), on=["scene", *settings, GIVEN], how="left")
+    return rows["run"].map(labelled.set_index("run")["label"]).to_numpy()
 
 
 def labels_by_settings(found, settings, columns, named):
@@ -115,18 +118,27 @@ def methods_in_order(rows, columns):
                                                                                  for name in ordering])]
 
 
-def shown_methods(scene, alphas, all_methods):
-    """The first method of each kind (PM by radius, PM by k, PPM, ...); or all; or of those with an alpha the given ones."""
+def best_of_each_kind(scene, labels, rank):
+    """Of each kind of method (PM by radius, PM by k, PPM, ...) the label of the least rank(label), the first of equals."""
     first_rows = scene.rows.drop_duplicates("method").set_index("method")
-    shown, kinds = [], set()
-    for label in scene.labels:
-        row = first_rows.loc[label]
-        kind = kind_of(row, scene.columns)
-        chosen = as_number(row["alpha"]) in alphas if alphas and row["alpha"] else kind not in kinds
-        if all_methods or chosen:
-            shown.append(label)
-            kinds.add(kind)
-    return shown
+    best = {}
+    for label in labels:
+        kind = kind_of(first_rows.loc[label], scene.columns)
+        best[kind] = min(best.get(kind, label), label, key=rank)
+    return set(best.values())
+
+
+def shown_methods(scene, alphas, all_methods, errors):
+    """The method of each kind with the least of `errors`, {label: number}, and the first where that is not known; or all; or of those
+    with an alpha the given ones."""
+    if all_methods:
+        return scene.labels
+    first_rows = scene.rows.drop_duplicates("method").set_index("method")
+    by_alpha = [label for label in scene.labels if alphas and first_rows.loc[label, "alpha"]]
+    chosen = {label for label in by_alpha if as_number(first_rows.loc[label, "alpha"]) in alphas}
+    chosen |= best_of_each_kind(scene, [label for label in scene.labels if label not in by_alpha],
+                                lambda label: errors.get(label, math.inf))
+    return [label for label in scene.labels if label in chosen]
 
 
 def run_of(scene, label, seed):

@@ -5,6 +5,7 @@ and times are numbers, NaN where there is nothing. `frame` is the same for a not
 there.
 """
 
+import contextlib
 import fnmatch
 import time
 from dataclasses import dataclass, field, replace
@@ -19,6 +20,7 @@ from photonlab.records.tables import place, to_numbers
 
 SCHEMA = "1"
 COMPONENTS = ["total", "emission", "direct", "gathered"]
+ROWS_A_BLOCK = 5_000
 COUNTED = ["seed", "pass"]    # identities that are numbers
 
 
@@ -31,7 +33,7 @@ class Records:
     labels: list              # of the methods, in the order for legends
     hash: str                 # of iterations.csv: what is drawn says by it which records it is of
     has_stamps: bool          # of a program that writes down what each file is (kept_files.py)
-    rows_by_run: dict         # {run: hash of its own iterations.csv}; None where rows are no lines
+    rows_by_run: dict         # {run: hash of its own iterations.csv}
     is_part: bool = False     # of what the folder has: tables of it are not the folder's
     runs: dict = field(default_factory=dict)    # those that were asked for
 
@@ -108,18 +110,31 @@ def read(results):
     if not files.is_there(file):
         raise InputError(f"{file}: is not there; expected the records of `photonlab run`")
     described = columns.read_columns(results)
-    data, has_stamps = read_merged(results, file.name)
-    rows = tables.table_in(file, data)
-    by_run = hashes_by_run(data, rows["run"]) if "run" in rows else None
-    rows = with_all_columns(file, rows, described)
-    check(file, rows)
+    by_run = HashesByRun()
+    with opened_merged(results, file.name) as (stream, hashed, has_stamps):
+        rows = read_rows(file, stream, described, by_run.add)
     require_own_folder(results, rows)
-    check_settings(file, rows, described)
-    rows = with_numbers(file, rows, described)
     rows[methods.GIVEN] = methods.given_names(rows, described)
+    check_settings(file, rows, described)
     refuse_repeated_rows(file, rows, described)
     rows["method"] = methods.method_labels(rows, described)
-    return Records(results, described, rows, methods.methods_in_order(rows, described), kept_files.hash_of(data), has_stamps, by_run)
+    return Records(results, described, rows, methods.methods_in_order(rows, described), hashed, has_stamps, by_run.hexdigests())
+
+
+def read_rows(file, stream, described, note):
+    """All rows, checked. They are read in blocks: as text a row takes ten times the memory that it takes once its numbers are."""
+    blocks, known = [], {}
+    for block in tables.blocks_in(file, stream, ROWS_A_BLOCK, note):
+        block = with_all_columns(file, block, described)
+        check(file, block)
+        blocks.append(with_texts_once(with_numbers(file, block, described), known))
+    return pandas.concat(blocks)
+
+
+def with_texts_once(rows, known):
+    """The table with each text that is in `known` as it is there: in memory once, whatever number of rows has it. Others are added."""
+    texts = [name for name in rows if rows[name].dtype == object]
+    return rows.assign(**{name: [known.setdefault(text, text) for text in rows[name]] for name in texts})
 
 
 def with_all_columns(file, rows, described):
@@ -147,22 +162,31 @@ def with_numbers(file, rows, described):
     return rows
 
 
-def read_merged(results, name):
-    """(bytes of a table that was merged from those of the runs, whether merged.json says what it is). The program replaces the table
-    and merged.json one after the other, so what does not fit is read again. (src/record/merged_records.h)"""
+@contextlib.contextmanager
+def opened_merged(results, name):
+    """A table that was merged from those of the runs: (a stream of its bytes, their hash, whether merged.json says what it is). The
+    program replaces the table and merged.json one after the other, so what does not fit is opened again; what is open stays what it
+    is when it is replaced. (src/record/merged_records.h)"""
     file, description = results / name, results / "merged.json"
     for attempt in range(5):
-        data = files.read_bytes(file)
-        if not files.is_there(description):
-            return data, False
-        merged = kept_files.read_json(description, kept_files.RUN_AGAIN, must_be_checked=True)
-        listed = merged.get("files") if isinstance(merged, dict) else None
-        if not isinstance(listed, dict) or not isinstance(listed.get(name, []), list):
-            raise InputError(f"{description}: expected \"files\", with a list by name; {kept_files.RUN_AGAIN}")
-        if {"bytes": len(data), "hash": kept_files.hash_of(data)} in listed.get(name, []):
-            return data, True
+        with files.opened(file) as stream:
+            hashed, size = kept_files.hash_of_stream(file, stream), stream.tell()
+            stream.seek(0)
+            is_described = files.is_there(description)
+            if not is_described or {"bytes": size, "hash": hashed} in listed_in(description, name):
+                yield stream, hashed, is_described
+                return
         time.sleep(0.05 * attempt)
     raise InputError(f"{file}: is not what was merged from the runs: its checksum is another; {kept_files.RUN_AGAIN}")
+
+
+def listed_in(description, name):
+    """What merged.json says of a table: its bytes and hash, of this merging and the one that it replaces."""
+    merged = kept_files.read_json(description, kept_files.RUN_AGAIN, must_be_checked=True)
+    listed = merged.get("files") if isinstance(merged, dict) else None
+    if not isinstance(listed, dict) or not isinstance(listed.get(name, []), list):
+        raise InputError(f"{description}: expected \"files\", with a list by name; {kept_files.RUN_AGAIN}")
+    return listed.get(name, [])
 
 
 def require_own_folder(results, rows):
@@ -178,17 +202,23 @@ def require_own_folder(results, rows):
                          f"experiment.json says that the folder is that of {owner}")
 
 
-def hashes_by_run(data, names):
-    """{run: hash of the table that its rows are, header and all}; None where a row is not a line."""
-    header, *lines = data.splitlines(keepends=True)
-    if len(lines) != len(names):
-        return None
-    hashes = {}
-    for run, line in zip(names, lines):
-        if run not in hashes:
-            hashes[run] = kept_files.running_hash(header)
-        hashes[run].update(line)
-    return {run: hashed.hexdigest() for run, hashed in hashes.items()}
+class HashesByRun:
+    """The hash of the table that the rows of each run are, header and all, from all rows one by one."""
+
+    def __init__(self):
+        self.place, self.header, self.hashes = None, b"", {}
+
+    def add(self, row, data):
+        if self.place is None:    # the header
+            self.header, self.place = data, row.index("run") if "run" in row else -1
+        elif self.place >= 0:
+            name = tables.from_file(row[self.place])
+            if name not in self.hashes:
+                self.hashes[name] = kept_files.running_hash(self.header)
+            self.hashes[name].update(data)
+
+    def hexdigests(self):
+        return {run: hashed.hexdigest() for run, hashed in self.hashes.items()}
 
 
 def check(file, rows):
@@ -204,9 +234,13 @@ def check(file, rows):
 
 def check_settings(file, rows, described):
     """Throws InputError where a run changes its settings, or has an alpha that it cannot have."""
-    changing = (rows.groupby("run")[described.settings].nunique() > 1).any(axis=1)
-    if changing.any():
-        raise InputError(f"{file}: run {changing.index[changing.to_numpy().argmax()]} has rows with different settings")
+    number, _ = pandas.factorize(rows["run"])
+    _, first = numpy.unique(number, return_index=True)    # row of each run
+    for name in [*described.settings, "scene", methods.GIVEN]:
+        column = rows[name].to_numpy()
+        changing = column != column[first[number]]
+        if changing.any():
+            raise InputError(f"{file}: run {rows['run'].iloc[changing.argmax()]} has rows with different settings")
     alpha = to_numbers(file, rows["alpha"])
     wrong = (alpha <= 0) | (alpha > 1)
     if wrong.any():

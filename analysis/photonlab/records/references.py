@@ -42,7 +42,7 @@ def reference_of(records, description):
             return reference_of_halves(path, found, halves, key)
         if files.is_there(found) and not found.is_dir():
             with files.opened(found) as stream:
-                is_same = key is None or kept_files.hash_of_stream(stream) == key
+                is_same = key is None or kept_files.hash_of_stream(found, stream) == key
             return Reference(path, [found] if is_same else [], "" if is_same else IS_ANOTHER)
     return Reference(path, [], "is not there")
 

@@ -35,7 +35,7 @@ def read_run(records, name):
     if not isinstance(listed, dict):
         raise InputError(f"{file}: expected \"files\", the bytes and hash of each file of the run")
     own_rows = kept_files.kept_file(folder / "iterations.csv", listed.get("iterations.csv"), advice)
-    if records.rows_by_run and records.rows_by_run[name] != own_rows.hash:
+    if records.rows_by_run[name] != own_rows.hash:
         raise InputError(f"{records.file}: the rows of {name} are of another making of this run than what is in {folder}; "
                          f"{kept_files.RUN_AGAIN}")
     return Run(folder, description, {number: kept_files.kept_file(folder / name, listed.get(name), advice)

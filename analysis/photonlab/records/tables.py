@@ -5,7 +5,6 @@ and read without: whatever text goes in comes out.
 """
 
 import csv
-import io
 import math
 import re
 from dataclasses import dataclass
@@ -33,28 +32,81 @@ def from_file(text):
 
 
 def read_table(file):
-    return table_in(file, files.read_bytes(file))
+    with files.opened(file) as stream:
+        return table_in(file, stream)
 
 
-def table_in(file, data):
-    """The bytes of a CSV as a table of text. pandas would fill up a row that was cut, so the fields are counted here."""
-    text = files.text_in(file, data)
-    reader = csv.reader(io.StringIO(text, newline=""), strict=True)
-    try:
-        header = next(reader, [])
-        rows = []
-        for row in reader:
-            if len(row) != len(header):
-                raise InputError(f"{file}:{reader.line_num}: has {len(row)} fields; the header has {len(header)}")
-            rows.append(row)
-    except csv.Error as error:
-        raise InputError(f"{file}: is not a table in CSV: {error}") from error
+def table_in(file, stream):
+    """A stream of the bytes of a CSV as a table of text."""
+    return next(blocks_in(file, stream, None))
+
+
+class Lines:
+    """The lines of a stream as text, one at a time, with the bytes of those that were taken since they were last asked for."""
+
+    def __init__(self, file, stream):
+        self.file, self.stream = file, stream
+        self.before, self.since = 0, b""    # bytes
+
+    def __iter__(self):
+        return self
+
+    def __next__(self):
+        try:
+            line = next(self.stream)
+        except OSError as error:
+            raise InputError(f"{self.file}: cannot be read: {files.reason(error)}") from error
+        try:
+            text = line.decode("utf-8")
+        except UnicodeDecodeError as error:
+            raise InputError(f"{self.file}: is not text in UTF-8: byte {self.before + error.start + 1} is no part of it") from error
+        self.before += len(line)
+        self.since += line
+        return text
+
+    def taken(self):
+        since, self.since = self.since, b""
+        return since
+
+
+def blocks_in(file, stream, rows_each, note=lambda row, data: None):
+    """The same in blocks of so many rows, one after another, the first of which may be empty. Rows are counted on from block to
+    block. `note` is told of each row, the header first, as a list of texts and as the bytes that it is. pandas would fill up a row
+    that was cut, so the fields are counted here."""
+    lines = Lines(file, stream)
+    reader = csv.reader(lines, strict=True)
+    header = next_row(file, reader) or []
+    note(header, lines.taken())
     if not header:
         raise InputError(f"{file}: is not a table in CSV: it is empty")
     if len(set(header)) < len(header):
         raise InputError(f"{file}: names a column twice")
-    table = pandas.DataFrame(rows, columns=header, dtype=str)
-    return table.apply(lambda column: column.map(from_file)) if "'" in text else table
+    first = 0
+    while True:
+        rows = []
+        while (rows_each is None or len(rows) < rows_each) and (row := next_row(file, reader)) is not None:
+            if len(row) != len(header):
+                raise InputError(f"{file}:{reader.line_num}: has {len(row)} fields; the header has {len(header)}")
+            data = lines.taken()
+            note(row, data)
+            if b"'" in data:
+                row = [from_file(cell) for cell in row]
+            rows.append(row)
+        if not rows and first > 0:
+            return
+        table = pandas.DataFrame(rows, columns=header, dtype=str, index=pandas.RangeIndex(first, first + len(rows)))
+        first += len(rows)
+        yield table
+        if rows_each is None or len(rows) < rows_each:
+            return
+
+
+def next_row(file, reader):
+    """None behind the last."""
+    try:
+        return next(reader, None)
+    except csv.Error as error:
+        raise InputError(f"{file}: is not a table in CSV: {error}") from error
 
 
 def write_table(file, columns, rows):
@@ -112,7 +164,7 @@ def quoted(value):
 
 def place(file, wrong):
     """file:line of the first row that is wrong; the header is line 1."""
-    return f"{file}:{wrong.to_numpy().argmax() + 2}"
+    return f"{file}:{wrong.index[wrong.to_numpy().argmax()] + 2}"
 
 
 def to_numbers(file, texts, whole=False):

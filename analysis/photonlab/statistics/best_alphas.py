@@ -99,7 +99,7 @@ def winner_of(family):
 def read_best(results):
     """Rows of RESULTS/best-alphas.csv: best alpha and paths as numbers, candidates as lists of them."""
     file = results.folder / NAME
-    rows = tables.read_derived(results, NAME, columns_of(results.columns), "`analysis fits` on an experiment that sweeps alpha")
+    rows = tables.read_derived(results, NAME, columns_of(results.columns), "`photonlab analyse fits` on an experiment that sweeps alpha")
     for column in ["paths_emitted", "best_alpha"]:
         rows[column] = tables.to_numbers(file, rows[column])
     rows["candidates"] = [[float(alpha) for alpha in listed.split(";") if alpha] for listed in rows["candidates"]]

@@ -51,7 +51,7 @@ def table_of(ensemble, results, own):
 def read_decomposition(results):
     """Rows of RESULTS/decomposition.csv with estimates and errors as numbers, NaN where there are none."""
     file = results.folder / NAME
-    rows = tables.read_derived(results, NAME, ["scene", "point", "component", "region", "pass", *MEASURED], "`analysis decomposition`")
+    rows = tables.read_derived(results, NAME, ["scene", "point", "component", "region", "pass", *MEASURED], "`photonlab analyse decomposition`")
     for column in ["pass", *MEASURED]:
         rows[column] = tables.to_numbers(file, rows[column], whole=column in ["pass", "seeds", "groups"])
     return rows

@@ -13,6 +13,8 @@ At edges bias is of order one in a band as wide as the radius, so its square fal
 straight edge is all bias there is: a disc of radius r at the distance t r misses the share (acos t - t sqrt(1 - t^2)) / pi of its
 photons. Divided by the area that is there, bias in the band is of first order in the radius, by a local linear fit of second: its
 square falls as 3 (alpha - 1) / 2 and 5 (alpha - 1) / 2. [docs/theory.md, section 2]
+
+All of it is of independent light paths: where `light_sequence` is not independent nothing is predicted of photons.
 """
 
 import math
@@ -105,6 +107,11 @@ def has_fixed_radius(first):
     return first["alpha"] == "" and first["radius_initial"] != "" and first["schedule"] == ""
 
 
+def is_of_a_sequence(first):
+    """True where photons of different paths depend on each other: the variance of their sum is none that is predicted here."""
+    return first.get("light_sequence") == "sobol"
+
+
 def predictions(rows, component, last):
     """{"variance", "squared_bias", "edge"}: for passes 1 to last, each up to a factor, squared bias where light is smooth and at
     edges; without what has no prediction. Those of component "total" are of its gathered light; with_direct_light() adds
@@ -113,6 +120,8 @@ def predictions(rows, component, last):
     number = numpy.arange(1, last + 1)
     if is_sampled(first, component):
         return {"variance": 1 / number}
+    if is_of_a_sequence(first):
+        return {}
     if has_fixed_radius(first):
         return {"variance": 1 / number, "squared_bias": numpy.ones(last), "edge": numpy.ones(last)}
     if not first["alpha"] or rows["radius_mean"].isna().all():
@@ -140,6 +149,8 @@ def asymptotes(first, component):
     none = {quantity: (None, None) for quantity in QUANTITIES}
     if is_sampled(first, component):
         return {**none, "variance": (-1.0, None), "mse": (-1.0, None)}
+    if is_of_a_sequence(first):
+        return none
     if has_fixed_radius(first):
         return {"variance": (-1.0, None), "squared_bias": (0.0, 0.0), "mse": (0.0, None)}
     if not first["alpha"]:

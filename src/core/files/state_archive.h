@@ -2,7 +2,10 @@
 // whether the archive writes or reads decides which way it goes, so that what is saved is what is restored.
 //
 // Values are stored as they lie in memory, for the machine and the program that wrote them; whoever keeps an archive
-// says of what it is (experiment/checkpoint.h).
+// says of what it is (render/checkpoint.h).
+//
+// States of disjoint passes can be joined: a reader that joins adds to what is there where a value is a sum, keeps the
+// larger where it is a maximum, and replaces the rest, which is then that of the state that was read last.
 
 #pragma once
 
@@ -33,6 +36,10 @@ public:
     StateArchive(std::istream& input, std::uint64_t bytes) : input_(&input), left_(bytes) {}
 
     bool reads() const { return input_ != nullptr; }
+
+    /// True when what is read joins what is there.
+    bool joins() const { return joins_; }
+    void begin_joining() { joins_ = true; }
 
     /// Writes the value, or replaces it by what was written. Reading throws InputError when the archive ends before.
     template <PlainValue Value>
@@ -73,12 +80,38 @@ public:
         move_bytes(values.data(), values.size() * sizeof(Value));
     }
 
+    /// A number that is a sum over passes.
+    template <typename Number>
+    void exchange_sum(Number& sum) {
+        exchange_joined(sum, [](Number& here, const Number& read) { here += read; });
+    }
+
+    /// A number that is the largest of all passes.
+    template <typename Number>
+    void exchange_largest(Number& largest) {
+        exchange_joined(largest, [](Number& here, const Number& read) {
+            if (read > here) here = read;
+        });
+    }
+
+    /// A value of which `join(here, read)` says what becomes of two.
+    template <PlainValue Value, typename Join>
+    void exchange_joined(Value& value, const Join& join) {
+        if (!joins_) return exchange(value);
+        Value read = value;
+        exchange(read);
+        join(value, read);
+    }
+
     /// Each element by `exchange_one(archive, element)`; for elements that are not plain.
     template <typename Value, typename ExchangeOne>
     void exchange_each(std::vector<Value>& values, const ExchangeOne& exchange_one) {
         values.resize(exchange_count(values.size(), 1));
         for (Value& value : values) exchange_one(*this, value);
     }
+
+    /// Leaves what follows unread.
+    void skip_rest() { left_ = 0; }
 
     std::uint64_t bytes_left() const { return left_; }  ///< to be read
     std::string hash() const { return hash_.text(); }   ///< of all bytes that were written or read
@@ -91,6 +124,7 @@ private:
     std::ostream* output_ = nullptr;
     std::istream* input_ = nullptr;
     std::uint64_t left_ = 0;
+    bool joins_ = false;
     RunningHash hash_;
 };
 

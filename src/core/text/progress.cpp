@@ -14,6 +14,7 @@ namespace photonlab {
 namespace {
 
 constexpr std::string_view clear_line = "\r\033[K";
+constexpr double seconds_between_lines = 60.0;  // of a log
 
 /// Of the terminal as it is now: its user may have changed its size.
 std::size_t terminal_columns() {
@@ -57,10 +58,11 @@ double Progress::now() const {
 }
 
 void Progress::show(std::uint64_t done, const std::string& what) {
-    constexpr double seconds_between = 0.2;
+    const double seconds_between = on_terminal_ ? 0.2 : seconds_between_lines;
     pace_.count(done, now());
     what_ = what;
-    if (on_terminal_ && (!visible_ || now() - drawn_ >= seconds_between)) draw();
+    const bool is_first = on_terminal_ && !visible_;
+    if (is_first || now() - drawn_ >= seconds_between) draw();
 }
 
 void Progress::skip(std::uint64_t done) {
@@ -70,9 +72,10 @@ void Progress::skip(std::uint64_t done) {
 void Progress::draw() {
     const std::optional<double> seconds = pace_.seconds_left();
     const std::string left = seconds ? describe_duration(*seconds) + " left" : "time left not known yet";
+    drawn_ = now();
+    if (!on_terminal_) return print_message("{:3.0f}%  {}  {}\n", 100.0 * pace_.share(), left, what_);
     // In the last column of some terminals the cursor is on the next line already.
     write_message(std::string(clear_line) + progress_line(pace_.share(), left, what_, terminal_columns() - 1));
-    drawn_ = now();
     visible_ = true;
 }
 

@@ -1,5 +1,5 @@
 // Progress of long work on a terminal: a line with a bar and the time left, never wider than the terminal is just then.
-// Not on a terminal there is no such line, and only what is finished is said.
+// Not on a terminal, in the log of a job, it is a plain line a minute at most, beside what is finished.
 
 #pragma once
 

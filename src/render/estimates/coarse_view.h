@@ -5,13 +5,14 @@
 #pragma once
 
 #include "scene/scene.h"
-#include "transport/camera_pass.h"
+#include "transport/camera/camera_pass.h"
 
 namespace photonlab {
 
 struct CoarseView {
     HitPoints hit_points;
-    double scale = 1.0;  ///< hit points of the scene's camera to those of this one
+    double pixel_scale = 1.0;  ///< pixels of the scene's camera to those of this one
+    double scale = 1.0;        ///< hit points of the scene's camera, at all sample positions, to those of this one
 };
 
 CoarseView trace_coarse_view(const Scene& scene, int samples_per_pixel, int threads, double branch_cutoff);

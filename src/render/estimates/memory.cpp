@@ -6,8 +6,8 @@
 
 #include "core/error.h"
 #include "core/machine/available_memory.h"
-#include "gather/gather_areas.h"
-#include "gather/photon_map.h"
+#include "gather/areas/gather_areas.h"
+#include "gather/map/photon_map.h"
 #include "integrators/registry.h"
 #include "render/estimates/coarse_view.h"
 
@@ -76,6 +76,9 @@ double MemoryEstimator::photon_bytes(const std::vector<RunSettings>& together) {
     if (needs_of(together[0].method).has_own_photons) bytes *= 1.0 + bytes_of_notes / sizeof(Photon);
     if (emits_adaptively(together[0].method))
         bytes += bytes_of_learnt_path * static_cast<double>(together[0].method.photons_per_pass);
+    for (const RunSettings& one : together)
+        if (needs_of(one.method).holds_photons)
+            bytes += 3.0 * size.map_bytes + size.photon_bytes / sizeof(Photon) * sizeof(ColorD);
     if (of_all) bytes += (2.0 * size.photon_bytes + size.map_bytes) * static_cast<double>(together[0].passes);
     return bytes;
 }

@@ -1,6 +1,7 @@
 #include "render/estimates/time_estimate.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "integrators/registry.h"
 #include "render/run_methods.h"
@@ -41,7 +42,8 @@ std::vector<RunState> measure(const Scene& scene, const CoarseView& view, RunSet
 double scaled_seconds(const StageTimes& times, bool has_photons, double photon_scale, double hit_point_scale) {
     if (!has_photons) return times.total() * hit_point_scale;
     return (times.of(Stage::Trace) + times.of(Stage::Build)) * photon_scale +
-           times.of(Stage::Gather) * photon_scale * hit_point_scale + times.of(Stage::Direct) * hit_point_scale;
+           times.of(Stage::Gather) * photon_scale * hit_point_scale +
+           (times.of(Stage::Direct) + times.of(Stage::Points)) * hit_point_scale;
 }
 
 TimeEstimate estimate_time(const Scene& scene, const CoarseView& view, const RunSettings& settings) {
@@ -60,8 +62,10 @@ TimeEstimate estimate_time(const Scene& scene, const CoarseView& view, const Run
     estimate.gathered += last.report.photons_gathered;
 
     const double photon_scale = static_cast<double>(all_paths) / static_cast<double>(paths);
+    const std::optional<NewPoints> new_points = needs_of(settings.method).new_points;
+    const double point_scale = new_points && !new_points->all_cells ? view.pixel_scale : view.scale;
     const auto scaled = [&](const RunState& state) {
-        return scaled_seconds(state.times, has_photons, photon_scale, view.scale);
+        return scaled_seconds(state.times, has_photons, photon_scale, point_scale);
     };
     const double pass_seconds = scaled(last) / static_cast<double>(measured_passes);
     const double first = std::max(0.0, scaled(states[0]) - pass_seconds);
@@ -69,6 +73,10 @@ TimeEstimate estimate_time(const Scene& scene, const CoarseView& view, const Run
     const double growth = std::max(0.0, second - first);
     const auto passes = static_cast<double>(settings.passes);
     estimate.seconds = pass_seconds * passes;
+    // Photons move when an epoch ends, and each is as long as all before it.
+    if (needs_of(settings.method).holds_photons)
+        estimate.seconds += last.times.of(Stage::Relax) * photon_scale * std::bit_width(settings.passes) /
+                            std::bit_width(measured_passes);
     if (has_photons)
         estimate.trace_seconds =
             last.times.of(Stage::Trace) * photon_scale / static_cast<double>(measured_passes) * passes;

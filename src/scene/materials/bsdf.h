@@ -18,6 +18,7 @@
 namespace photonlab {
 
 struct Material;
+struct Microfacets;
 struct MaterialReader;
 
 /// What a path carries. Camera paths carry radiance, which refraction compresses with the square of the index; photons
@@ -64,7 +65,9 @@ struct MaterialCheck {
     /// What is reflected or let through is no more than what arrived: a colour in [0, 1].
     void in_unit_range(std::string_view what, const Color& color) const;
     void roughness(float alpha) const;
-    void index(float index) const;  ///< of refraction
+    void facets(const Microfacets& facets) const;
+    void anisotropy(bool is_anisotropic) const;  ///< of it, or of what it is made of
+    void index(float index) const;               ///< of refraction
     void require(bool holds, const std::string& expected) const;
     void part(const Material* part) const;  ///< of what it is made
     /// True when the material keeps `data`, which its BSDF looks up.
@@ -95,6 +98,13 @@ concept Scattering = requires(const Kind& bsdf, const Vector& direction, const I
 template <typename Kind>
 concept Uniform = requires(const Kind& bsdf) {
     { bsdf.uniform_value() } -> std::same_as<Color>;
+};
+
+/// A scattering lobe that is all there is, and may be narrow: a camera path may go on from it in a drawn direction.
+/// roughness() is Mitsuba's alpha.
+template <typename Kind>
+concept Glossy = Scattering<Kind> && requires(const Kind& bsdf) {
+    { bsdf.roughness() } -> std::same_as<float>;
 };
 
 /// Light passes through, and the surface is lit from both sides: turned_over() is what is seen from behind.

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "scene/materials/microfacet.h"
+#include "scene/materials/rough/microfacet.h"
 
 namespace photonlab {
 
@@ -33,6 +33,16 @@ void MaterialCheck::roughness(float alpha) const {
     require(std::isfinite(alpha) && alpha >= smallest_roughness, fmt::format("a roughness above 0, got {}", alpha));
 }
 
+void MaterialCheck::facets(const Microfacets& facets) const {
+    roughness(facets.alpha_u);
+    roughness(facets.alpha_v);
+    anisotropy(facets.is_anisotropic());
+}
+
+void MaterialCheck::anisotropy(bool is_anisotropic) const {
+    require(!is_anisotropic || material.is_anisotropic, "the same roughness in all directions, or is_anisotropic");
+}
+
 void MaterialCheck::index(float index) const {
     require(std::isfinite(index) && index > 0.0f, fmt::format("an index above 0, got {}", index));
 }
@@ -40,6 +50,7 @@ void MaterialCheck::index(float index) const {
 void MaterialCheck::part(const Material* part) const {
     require(part != nullptr, "a nested material");
     require_valid(*part);
+    anisotropy(part->is_anisotropic);
     // What a mask lets through goes straight on in any frame: it takes over what turns the normals of its part.
     require(!has_turned_normals(*part) || std::holds_alternative<Mask>(material.bsdf),
             "nested materials whose normals are not turned by a texture");
@@ -54,7 +65,9 @@ void require_valid(const Material& material) {
     if (most_branches(material.bsdf) > SpecularBranches::limit)
         fail(material, fmt::format("expected at most {} single directions in which light goes on, got {}",
                                    SpecularBranches::limit, most_branches(material.bsdf)));
-    if (material.back) require_valid(*material.back);
+    if (!material.back) return;
+    require_valid(*material.back);
+    MaterialCheck{material}.anisotropy(material.back->is_anisotropic);
 }
 
 std::optional<BsdfSample> choose_branch(const SpecularBranches& branches, float u) {
@@ -107,6 +120,11 @@ Bsdf part_at(const Material& part, const Imath::V2f& texture_coordinate, bool fr
 bool needs_texture_coordinates(const Material& material) {
     return !material.textures.empty() || material.parts_look_up_textures || has_turned_normals(material) ||
            (material.back && needs_texture_coordinates(*material.back));
+}
+
+void remember_part(Material& whole, const Material& part) {
+    whole.parts_look_up_textures = whole.parts_look_up_textures || needs_texture_coordinates(part);
+    whole.is_anisotropic = whole.is_anisotropic || part.is_anisotropic;
 }
 
 bool is_seen_from_behind(const Material& material) {

@@ -53,6 +53,8 @@ struct Material {
     std::optional<NormalTexture> normals = {};  ///< of the front
     std::optional<NormalTexture> normals_behind = {};
     bool parts_look_up_textures = false;  ///< those that it is made of
+    bool is_anisotropic = false;  ///< it, its back or a part of it has a roughness that depends on the direction: its
+                                  ///< frame then has its tangent along u
 };
 
 /// Throws InputError for what cannot be rendered.
@@ -153,6 +155,18 @@ inline std::optional<Color> uniform_value(const Bsdf& bsdf) {
         bsdf);
 }
 
+/// Of a surface that is glossy and nothing else.
+inline std::optional<float> roughness(const Bsdf& bsdf) {
+    return visit_bsdf(
+        []<typename B>(const B& b) -> std::optional<float> {
+            if constexpr (Glossy<B>)
+                return b.roughness();
+            else
+                return std::nullopt;
+        },
+        bsdf);
+}
+
 /// Where specular light goes on; none for other BSDFs.
 SpecularBranches specular_branches(const Bsdf& bsdf, const Vector& outgoing, Carried carried);
 
@@ -221,7 +235,8 @@ Bsdf part_at(const Material& part, const Imath::V2f& texture_coordinate, bool fr
 // that depends on a texture.
 
 bool needs_texture_coordinates(const Material& material);
-bool is_seen_from_behind(const Material& material);  ///< else it is black from there
+void remember_part(Material& whole, const Material& part);  ///< what the whole must know of it
+bool is_seen_from_behind(const Material& material);         ///< else it is black from there
 bool may_be_specular(const Material& material);
 bool may_scatter(const Material& material);
 bool may_be_black_by_texture(const Material& material);            ///< it, or a part of it

@@ -124,8 +124,7 @@ const std::vector<Material>& MaterialReader::parts(std::size_t count) {
     if (parts.size() != count)
         throw InputError(element.place, fmt::format("{}: expected {} nested bsdf{}, got {}", element.attribute("type"),
                                                     count, count == 1 ? "" : "s", parts.size()));
-    for (const Material& part : parts)
-        material.parts_look_up_textures = material.parts_look_up_textures || needs_texture_coordinates(part);
+    for (const Material& part : parts) remember_part(material, part);
     const auto kept = std::make_shared<const std::vector<Material>>(std::move(parts));
     material.data = kept;
     return *kept;
@@ -146,22 +145,45 @@ Microfacets MaterialReader::read_facets() {
     if (std::find(names.begin(), names.end(), name) == names.end())
         throw InputError(properties.place_of("distribution"), unknown_name("distribution", name, names));
     properties.boolean("sample_visible");  // which changes noise alone
-    const auto along_u = properties.number("alpha_u");
-    const auto along_v = properties.number("alpha_v");
-    if (along_u.has_value() != along_v.has_value() || (along_u && has("alpha")))
+    if (has("alpha_u") != has("alpha_v") || (has("alpha_u") && has("alpha")))
         throw InputError(element.place,
                          fmt::format("{}: expected alpha, or alpha_u and alpha_v", element.attribute("type")));
-    if (along_u && *along_u != *along_v)
-        throw InputError(properties.place_of("alpha_u"),
-                         fmt::format("alpha_u: expected the same as alpha_v, got {} and {}: roughness that depends on "
-                                     "the direction is not known here",
-                                     *along_u, *along_v));
-    const double alpha = along_u ? *along_u : properties.number("alpha").value_or(0.1);
-    if (!(alpha >= 0.0))
-        throw InputError(properties.place_of("alpha"),
-                         fmt::format("alpha: expected a number of at least 0, got {}", alpha));
-    facets.alpha = std::max(static_cast<float>(alpha), smallest_roughness);
+    const auto alpha_called = [&](const char* called) {
+        const double alpha = properties.number(called).value_or(0.1);
+        if (!(alpha >= 0.0))
+            throw InputError(properties.place_of(called),
+                             fmt::format("{}: expected a number of at least 0, got {}", called, alpha));
+        return std::max(static_cast<float>(alpha), smallest_roughness);
+    };
+    facets.alpha_u = alpha_called(has("alpha_u") ? "alpha_u" : "alpha");
+    facets.alpha_v = alpha_called(has("alpha_v") ? "alpha_v" : "alpha");
     return facets;
+}
+
+Imath::V2f MaterialReader::range_of_alpha(const Microfacets& facets) const {
+    constexpr float largest = 4.0f;
+    if (!alpha_texture_) return Imath::V2f(facets.alpha_u);
+    const TextureRange range = range_of(*alpha_texture_);
+    if (!(range.most <= largest))
+        throw InputError(element.place, fmt::format("{}: alpha: expected a texture of at most {}, got {}",
+                                                    element.attribute("type"), largest, range.most));
+    return {std::max(range.least, smallest_roughness), std::max(range.most, smallest_roughness)};
+}
+
+/// 0.6 scales both down by one factor where the largest values of the two add up to more than 1.
+MaterialReader::BaseAndLobe MaterialReader::read_base_and_lobe() {
+    BaseAndLobe colors{.base = color_or_texture("diffuse_reflectance", 0.5),
+                       .lobe = color_or_texture("specular_reflectance", 0.2),
+                       .scale = 1.0f};
+    const float largest = max_channel(colors.base.largest() + colors.lobe.largest());
+    if (largest > 1.0f && std::isfinite(largest)) {
+        const std::string type = element.attribute("type");
+        colors.scale = 0.99f / largest;
+        require_may_scale(element.place, type + ": its reflectances add up to", largest);
+        source.note(fmt::format("{}: {}: its reflectances add up to {:.3f} and are scaled by {:.4f}, as in Mitsuba 0.6",
+                                element.place, type, largest, colors.scale));
+    }
+    return colors;
 }
 
 void MaterialReader::pass_over_roughness() {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "scene/materials/material.h"
-#include "scene/materials/microfacet.h"
+#include "scene/materials/rough/microfacet.h"
 #include "scene/mitsuba/plugin.h"
 
 namespace photonlab {
@@ -40,6 +40,22 @@ struct MaterialReader : Plugin {
 
     /// A reflectance as the file has it, which may be above 1 together with others.
     ColorOrTexture color_or_texture(const std::string& name, double missing);
+
+    /// The diffuse_reflectance of a base and the specular_reflectance of a lobe above it.
+    template <typename Kind>
+    void read_base_and_lobe(Kind& bsdf) {
+        const BaseAndLobe colors = read_base_and_lobe();
+        const auto put = [&](Color Kind::*member, const ColorOrTexture& given) {
+            bsdf.*member = given.color * colors.scale;
+            if (!given.texture) return;
+            material.textures.push_back(
+                {given.texture, [member, scale = colors.scale](Bsdf& there, const Color& color) {
+                     std::get<Kind>(there).*member = color * scale;
+                 }});
+        };
+        put(&Kind::diffuse_reflectance, colors.base);
+        put(&Kind::specular_reflectance, colors.lobe);
+    }
 
     /// Throws InputError where the file forbids to scale what reflects more than it gets.
     void require_may_scale(const std::string& place, const std::string& what, double largest) const;
@@ -77,17 +93,31 @@ struct MaterialReader : Plugin {
         return Color(into_unit_range(static_cast<float>(luminance(color))));
     }
 
-    /// How rough a surface is: its distribution, and alpha as a number or, where `member` says whose, a texture.
+    /// How rough a surface is: its distribution, and alpha, or alpha_u and alpha_v, each a number or a texture, which
+    /// then gives those of `member`.
     template <typename Kind>
     Microfacets facets(Microfacets Kind::*member) {
-        if (!member) return read_facets();
-        if (auto texture = find_texture("alpha", TextureUse::Share))
+        const auto put_at = [&](const std::string& name, std::vector<float Microfacets::*> alphas) {
+            auto texture = find_texture(name, TextureUse::Share);
+            if (!texture) return false;
+            if (name == "alpha") alpha_texture_ = texture;
             material.textures.push_back(
-                {std::move(texture), [member, is_mean = is_version_06()](Bsdf& bsdf, const Color& color) {
-                     (std::get<Kind>(bsdf).*member).alpha = std::max(as_number(color, is_mean), smallest_roughness);
+                {std::move(texture), [member, alphas, is_mean = is_version_06()](Bsdf& bsdf, const Color& color) {
+                     for (const auto alpha : alphas)
+                         std::get<Kind>(bsdf).*member.*alpha = std::max(as_number(color, is_mean), smallest_roughness);
                  }});
-        return read_facets();
+            return true;
+        };
+        const Microfacets facets = read_facets();
+        put_at("alpha", {&Microfacets::alpha_u, &Microfacets::alpha_v});
+        const bool is_textured =
+            put_at("alpha_u", {&Microfacets::alpha_u}) | put_at("alpha_v", {&Microfacets::alpha_v});
+        material.is_anisotropic = is_textured || facets.is_anisotropic();
+        return facets;
     }
+
+    /// The least and the most that alpha is anywhere. Throws InputError beyond 4, as Mitsuba 0.6 does.
+    Imath::V2f range_of_alpha(const Microfacets& facets) const;
 
     /// Of smooth materials: what says how rough they are is known to other programs alone.
     void pass_over_roughness();
@@ -109,6 +139,13 @@ private:
     std::shared_ptr<const Texture> find_texture(const std::string& name, TextureUse use);
     Microfacets read_facets();
 
+    struct BaseAndLobe {
+        ColorOrTexture base;
+        ColorOrTexture lobe;
+        float scale;  ///< of both
+    };
+    BaseAndLobe read_base_and_lobe();
+
     /// What a colour is as one number: 0.6 has its mean, 3 its brightness.
     static float as_number(const Color& color, bool is_mean) {
         return is_mean ? (color.x + color.y + color.z) / 3.0f : luminance(color);
@@ -117,6 +154,7 @@ private:
 
     bool may_scale_ = true;  // what reflects more than it gets
     std::set<std::string> textures_asked_;
+    std::shared_ptr<const Texture> alpha_texture_;
     std::set<const XmlElement*> objects_read_;
 };
 

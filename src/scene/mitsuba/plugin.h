@@ -16,17 +16,18 @@
 namespace photonlab {
 
 struct ColorImage;
-struct RoughCoat;
+struct RoughCoats;
 
 /// What reading a plugin may need from the scene around it.
 struct SceneSource {
     /// The element itself, or the one that a <ref> names.
     std::function<const XmlElement&(const XmlElement&)> resolve;
-    std::string& bytes_read;                       ///< takes the bytes of every file that is read
+    BytesRead& bytes_read;                         ///< takes the bytes of every file that is read
     std::size_t& image_pixels;                     ///< of all textures and surroundings so far
     std::function<void(const std::string&)> note;  ///< takes what the user should know, a sentence each
     std::map<std::string, std::shared_ptr<const ColorImage>>& images;  ///< of textures, by file and decoding
-    std::map<std::array<double, 3>, std::shared_ptr<const RoughCoat>>& rough_coats;  ///< by slopes, alpha and index
+    std::map<std::array<double, 4>, std::shared_ptr<const RoughCoats>>& rough_coats;  ///< by slopes, least and most
+                                                                                      ///< alpha, and index
     int depth = 0;                        ///< of materials or textures inside each other
     std::size_t* nested_count = nullptr;  ///< of all materials inside the outermost one
 };

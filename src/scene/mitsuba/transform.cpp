@@ -147,10 +147,12 @@ VectorD transform_direction(const Matrix& matrix, const VectorD& direction) {
     return result;
 }
 
+Matrix matrix_of_normals(const Matrix& matrix) {
+    return matrix.inverse().transposed();
+}
+
 VectorD transform_normal(const Matrix& matrix, const VectorD& normal) {
-    VectorD result;
-    matrix.inverse().transposed().multDirMatrix(normal, result);
-    return result.normalized();
+    return transform_direction(matrix_of_normals(matrix), normal).normalized();
 }
 
 double handedness(const Matrix& m) {

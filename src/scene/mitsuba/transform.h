@@ -20,7 +20,10 @@ VectorD parse_vector(const XmlElement& element, double missing = 0.0);
 VectorD transform_point(const Matrix& matrix, const VectorD& point);
 VectorD transform_direction(const Matrix& matrix, const VectorD& direction);
 
-/// A unit normal, by the inverse transpose.
+/// The inverse transpose, which takes normals, as directions, to where the matrix takes points.
+Matrix matrix_of_normals(const Matrix& matrix);
+
+/// A unit normal.
 VectorD transform_normal(const Matrix& matrix, const VectorD& normal);
 
 /// Determinant of the 3 x 3 part: negative for a mirroring.

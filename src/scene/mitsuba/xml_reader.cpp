@@ -167,7 +167,7 @@ std::filesystem::path first_existing(const std::vector<std::filesystem::path>& c
 
 class Reader {
 public:
-    Reader(const std::map<std::string, std::string>& parameters, std::string& bytes_read)
+    Reader(const std::map<std::string, std::string>& parameters, BytesRead& bytes_read)
         : parameters_(parameters), bytes_read_(bytes_read), values_(parameters.begin(), parameters.end()) {}
 
     XmlElement read_file(const std::filesystem::path& file, const std::string& from,
@@ -183,8 +183,8 @@ public:
         if (++files_ > file_limit)
             throw InputError(from, fmt::format("expected at most {} files included", file_limit));
         const std::string text = read_whole_file(file, from);
-        bytes_read_ += text;
-        if (bytes_read_.size() > xml_size_limit)
+        bytes_read_.add(text);
+        if (bytes_read_.size > xml_size_limit)
             throw InputError(from, fmt::format("expected a scene file and what it includes to have at most {} bytes",
                                                xml_size_limit));
         const LineNumbers lines(text);
@@ -333,7 +333,7 @@ private:
     }
 
     const std::map<std::string, std::string>& parameters_;
-    std::string& bytes_read_;
+    BytesRead& bytes_read_;
     Values values_;  // of parameters_, and of the <default>s read so far
     std::set<std::string> used_;
     std::vector<std::filesystem::path> open_files_;
@@ -371,7 +371,7 @@ std::filesystem::path XmlElement::file_called(const std::string& name) const {
 }
 
 XmlElement read_scene_xml(const std::filesystem::path& file, const std::map<std::string, std::string>& parameters,
-                          std::string& bytes_read) {
+                          BytesRead& bytes_read) {
     Reader reader(parameters, bytes_read);
     XmlElement scene = reader.read_file(file, file.string(), nullptr);
     reader.require_all_used(file);
@@ -387,14 +387,14 @@ std::string read_whole_file(const std::filesystem::path& file, const std::string
     }
 }
 
-std::string read_part(const std::filesystem::path& file, const std::string& place, std::string& bytes_read) {
+std::string read_part(const std::filesystem::path& file, const std::string& place, BytesRead& bytes_read) {
     std::string bytes = read_whole_file(file, place);
-    if (bytes_read.size() + bytes.size() > size_limit)
+    if (bytes_read.size + bytes.size() > size_limit)
         throw InputError(place,
                          fmt::format("expected a scene and the files that it names to have at most {} bytes, each "
                                      "counted as often as it is named",
                                      size_limit));
-    bytes_read += bytes;
+    bytes_read.add(bytes);
     return bytes;
 }
 

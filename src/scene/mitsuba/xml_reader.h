@@ -4,12 +4,15 @@
 
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "core/hash.h"
 
 namespace photonlab {
 
@@ -48,18 +51,29 @@ struct XmlElement {
     std::filesystem::path file_called(const std::string& name) const;
 };
 
+/// What a scene was read from: all bytes of the scene file and of those that it names, in the order of reading.
+struct BytesRead {
+    RunningHash hash;
+    std::uintmax_t size = 0;
+
+    void add(std::string_view bytes) {
+        hash.add(bytes.data(), bytes.size());
+        size += bytes.size();
+    }
+};
+
 /// Reads `file` and what it includes. Returns its <scene>, the children of included scenes in place of each <include>,
 /// <default>s removed, and of <path>s those left whose folder is not there. `parameters` replace the values of
-/// defaults. Every byte read is appended to `bytes_read`.
+/// defaults. Every byte read is added to `bytes_read`.
 XmlElement read_scene_xml(const std::filesystem::path& file, const std::map<std::string, std::string>& parameters,
-                          std::string& bytes_read);
+                          BytesRead& bytes_read);
 
 /// Whole file as text; InputError at `place` when it cannot be read or is larger than 2 GiB.
 std::string read_whole_file(const std::filesystem::path& file, const std::string& place);
 
-/// A file that a scene names, which is also appended to `bytes_read`: all of them together have at most 2 GiB, for a
+/// A file that a scene names, which is also added to `bytes_read`: all of them together have at most 2 GiB, for a
 /// small scene can name a large file any number of times. InputError at `place`.
-std::string read_part(const std::filesystem::path& file, const std::string& place, std::string& bytes_read);
+std::string read_part(const std::filesystem::path& file, const std::string& place, BytesRead& bytes_read);
 
 /// For messages: the first line, and of a long one its beginning.
 std::string excerpt(std::string_view text);

@@ -44,13 +44,6 @@ Bounds MeshDescription::bounds() const {
 
 namespace {
 
-/// Corners of a triangle, unit box, before they are rounded to float: rounding turns the plane of a sliver.
-std::array<VectorD, 3> corners(const MeshDescription& mesh, std::size_t triangle, const ToUnitBox& to_unit_box) {
-    const auto& vertices = mesh.triangles[triangle];
-    return {to_unit_box.exact(mesh.positions[vertices.x]), to_unit_box.exact(mesh.positions[vertices.y]),
-            to_unit_box.exact(mesh.positions[vertices.z])};
-}
-
 /// Nine numbers that tell two triangles apart, whichever corner they begin with.
 std::array<double, 9> identity_of(std::array<VectorD, 3> triangle) {
     const auto is_before = [](const VectorD& a, const VectorD& b) {
@@ -67,13 +60,19 @@ std::array<double, 9> identity_of(std::array<VectorD, 3> triangle) {
 TriangleMesh MeshDescription::placed(const ToUnitBox& to_unit_box, const ShapeUse& use) const {
     TriangleMesh mesh;
     mesh.triangles = triangles;
-    for (const VectorD& position : positions) mesh.positions.push_back(to_unit_box(position));
-    for (const VectorD& normal : normals) mesh.normals.push_back(Vector(normal));
+    std::vector<VectorD> exact;  // not rounded to float, which turns the plane of a sliver
+    exact.reserve(positions.size());
+    for (const VectorD& position : positions) exact.push_back(to_unit_box.exact(position));
+    mesh.positions.reserve(exact.size() + 1);
+    mesh.positions.assign(exact.begin(), exact.end());
+    mesh.normals.assign(normals.begin(), normals.end());
+    mesh.texture_coordinates.reserve(texture_coordinates.size());
     for (const Imath::V2d& uv : texture_coordinates)
         mesh.texture_coordinates.emplace_back(static_cast<float>(uv.x), static_cast<float>(uv.y));
     std::set<std::array<double, 9>> shining;  // a triangle that is there twice shines once
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-        const std::array<VectorD, 3> triangle = corners(*this, i, to_unit_box);
+    mesh.geometric_normals.reserve(triangles.size());
+    for (const auto& corners : triangles) {
+        const std::array<VectorD, 3> triangle{exact[corners.x], exact[corners.y], exact[corners.z]};
         const VectorD normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
         mesh.geometric_normals.emplace_back(normal.normalized());
         if (!use.emits || shining.insert(identity_of(triangle)).second) mesh.surface_area += 0.5 * normal.length();

@@ -25,7 +25,7 @@ struct MeshDescription {
 struct TriangleMesh {
     static constexpr const char* name = "mesh";
 
-    std::vector<Vector> positions;
+    std::vector<Vector> positions;                ///< with room for one more: Embree reads 16 bytes of each
     std::vector<Vector> normals;                  ///< shading normals, one a vertex, or empty
     std::vector<Imath::V2f> texture_coordinates;  ///< one a vertex; empty: barycentric
     std::vector<Imath::Vec3<std::uint32_t>> triangles;

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import numpy
-from photonlab.figures import probes, scaling
+from photonlab.figures import deviations, probes, relaxation, scaling
 from support import ensembles as made
 from support import synthetic
 from support.images import grey, write_runs
@@ -15,8 +15,8 @@ POINTS = {"cornell-box_default": ("0.5", "2"), "cornell-box_b": ("0.5", "3"), "c
 UPDATE = "axis,value,update,radius,count,estimate\npasses,1,program,0,0,0\n"
 
 # What is called after what: a command reads what those before it wrote.
-COMMANDS = ["convergence", "strip", "gallery", "decomposition", "fits", "bias_variance", "memory", "best_alpha", "grid", "equal_time",
-            "equal_error", "spectrum", "metrics", "answer", "time_to_error", "tradeoff", "probes", "scaling", "report"]
+COMMANDS = ["convergence", "strip", "gallery", "decomposition", "fits", "bias_variance", "memory", "best_alpha", "regions", "grid", "equal_time",
+            "equal_error", "spectrum", "metrics", "answer", "time_to_error", "tradeoff", "probes", "scaling", "deviations", "relaxation", "report"]
 
 
 def make(results):
@@ -44,6 +44,12 @@ def make(results):
     synthetic.write_rows(results / "scaling.csv", scaling.COLUMNS, [
         {**dict.fromkeys(scaling.COLUMNS, "1"), "axis": axis, "value": value, "integrator": integrator}
         for axis in ["photons", "hit_points", "passes"] for value in [1, 10] for integrator in scaling.PASSES_OF])
+    synthetic.write_rows(results / "deviations.csv", deviations.COLUMNS, [
+        {"deviation": name, "quantity": "radiance", "pass": number, "value": 1 + 0.1 / number, "value_error": 0.01, "right": 1,
+         "right_error": 0.01} for name in deviations.PANELS for number in [1, 2, 4]])
+    synthetic.write_rows(results / "relaxation.csv", relaxation.COLUMNS, [
+        {"kind": kind, "stage": stage, "x": x, "y": 1 / x} for kind in ["photon", "edge", "counts"] for stage in relaxation.STAGES
+        for x in [1, 2, 4]])
 
 
 def make_extremes(results, rays):

@@ -23,16 +23,18 @@ RUN = "runs/cornell-box_default_seed-1"
 IMAGES = [f"{RUN}/run.json", f"{RUN}/snapshots/pass-000032.exr", "reference/half_b.exr"]
 SUMS = ["ensembles/cornell-box_b/ensemble.json", "ensembles/cornell-box_b/slot-02.exr", "reference/half_a.exr"]
 READS = {"convergence": [], "strip": IMAGES, "gallery": IMAGES, "decomposition": SUMS, "fits": SUMS,
-         "bias_variance": ["decomposition.csv"], "memory": [], "best_alpha": ["best-alphas.csv"], "grid": IMAGES,
+         "bias_variance": ["decomposition.csv"], "memory": [], "best_alpha": ["best-alphas.csv"], "regions": ["decomposition.csv"], "grid": IMAGES,
          "equal_time": [*IMAGES[:2], "decomposition.csv"], "equal_error": IMAGES[:2], "spectrum": IMAGES,
-         "metrics": IMAGES, "answer": [], "time_to_error": [], "tradeoff": [], "probes": ["probes.csv"], "scaling": [],
+         "metrics": IMAGES, "answer": [], "time_to_error": [], "tradeoff": [], "probes": ["probes.csv"], "scaling": [], "deviations": [],
+         "relaxation": [],
          "report": [*IMAGES, "fits.csv", "decomposition.csv"]}
 FIGURES = {"convergence": ["convergence-cornell-box"], "strip": ["strip-cornell-box"], "gallery": ["gallery"],
            "bias_variance": ["bias-variance-cornell-box"], "memory": ["memory-cornell-box"], "best_alpha": ["best-alpha-cornell-box"],
+           "regions": ["regions-cornell-box"],
            "grid": ["grid-cornell-box", "differences-cornell-box"], "equal_time": ["equal-time-cornell-box"],
            "equal_error": ["equal-error-cornell-box"], "spectrum": ["spectrum-cornell-box"],
            "time_to_error": ["time-to-error"], "tradeoff": ["tradeoff-cornell-box"], "probes": ["probes-cornell-box"],
-           "scaling": ["scaling"]}
+           "scaling": ["scaling"], "deviations": ["deviations"], "relaxation": ["relaxation"]}
 TABLES = {"decomposition": ["decomposition.csv"], "fits": ["fits.csv", "best-alphas.csv"], "equal_time": ["equal-time.csv"],
           "spectrum": ["spectrum.csv"], "metrics": ["metrics.csv"], "answer": ["answers.csv"],
           "time_to_error": ["time-to-error.csv"], "tradeoff": ["tradeoff.csv", "tradeoff.md"], "report": ["report.html"]}
@@ -153,7 +155,8 @@ class Commands(unittest.TestCase):
     def test_what_is_no_file_is_refused_by_name(self):
         for put in [os.mkfifo, lambda file: file.symlink_to("/proc/kmsg"), lambda file: file.write_bytes(b"\xff\xfe\x00")]:
             for name, arguments in self.calls():
-                first = {"scaling": "scaling.csv", "best_alpha": "best-alphas.csv"}.get(name, "iterations.csv")
+                first = {"scaling": "scaling.csv", "deviations": "deviations.csv", "relaxation": "relaxation.csv",
+                         "best_alpha": "best-alphas.csv"}.get(name, "iterations.csv")
                 for file in [first, *READS.get(name, [])]:
                     file = Path(arguments[0]) / file
                     with self.replaced(file, put):

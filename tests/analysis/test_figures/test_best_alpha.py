@@ -45,12 +45,12 @@ class BestAlpha(InFolder):
 
     def test_without_a_table_or_with_an_older_one_it_says_what_to_run(self):
         synthetic.write_csv(self.results, synthetic.rows(lambda *_: 1e-4))
-        self.assertIn("best-alphas.csv: is not there; run `analysis fits`", self.refusal_of("best_alpha"))
+        self.assertIn("best-alphas.csv: is not there; run `photonlab analyse fits`", self.refusal_of("best_alpha"))
         (self.results / "best-alphas.csv").write_text("scene,best_alpha\nbox,0.7\n")
         self.assertIn("candidates", self.refusal_of("best_alpha"))
         write_best(self.results)
         synthetic.write_csv(self.results, synthetic.rows(lambda *_: 2e-4))
-        self.assertIn("best-alphas.csv: was made from other records than those in iterations.csv; run `analysis fits`",
+        self.assertIn("best-alphas.csv: was made from other records than those in iterations.csv; run `photonlab analyse fits`",
                       self.refusal_of("best_alpha"))
 
 

@@ -81,7 +81,7 @@ class BiasVariance(InFolder):
 
     def test_without_a_decomposition_it_says_what_to_run(self):
         (self.results / "decomposition.csv").unlink()
-        self.assertIn("run `analysis decomposition` first", self.refusal_of("bias_variance"))
+        self.assertIn("run `photonlab analyse decomposition` first", self.refusal_of("bias_variance"))
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from matplotlib import pyplot
 
 from photonlab import figures
 from photonlab.drawing import style, text
-from photonlab.figures import convergence, scaling
+from photonlab.figures import convergence, deviations, relaxation, scaling
 from support import ANALYSIS, synthetic, whole_results
 from support.images import layered, write_exr, write_runs
 from support.in_folder import InFolder, run
@@ -212,7 +212,8 @@ class Notebook(InFolder):
         kinds = [name for name in whole_results.COMMANDS if name in {module.COMMAND.name for module in figures.MODULES}]
         self.assertGreater(len(kinds), 12)
         for kind in kinds:
-            results = scaling.Measured(self.results) if kind == "scaling" else self.read()
+            measured = {"scaling": scaling.Measured, "deviations": deviations.Measured, "relaxation": relaxation.Measured}.get(kind)
+            results = measured(self.results) if measured else self.read()
             self.assertTrue(figures.of(kind, results), kind)
             pyplot.close("all")
         self.assertEqual(sorted(self.results.rglob("*")), before)

@@ -9,7 +9,7 @@ from support.in_folder import InFolder
 
 
 def made_up():
-    """Seconds grow with photons to the power 1 and with hit points to 0.5; two threads are 1.6 times as fast; PM's map grows with
+    """Seconds grow with photons to the power 1, with hit points to 0.5 and with triangles to 0.1; two threads are 1.6 times as fast; PM's map grows with
     passes, PPM's does not."""
     rows = []
 
@@ -21,6 +21,8 @@ def made_up():
             row("photons", photons, threads, 1e-6 * photons * factor, 64.0 * photons)
         for points in [10_000, 1_000_000]:
             row("hit_points", points, threads, 1e-4 * points ** 0.5 * factor, 6.4e6)
+        for triangles in [1_000, 10_000, 1_000_000]:
+            row("triangles", triangles, threads, 0.01 * triangles ** 0.1 * factor, 6.4e6)
     for passes in [1, 100, 10_000]:
         row("passes", passes, 1, 1e-3, 2.0 ** 20)
         row("passes", passes, 1, 1e-3, 2.0 ** 20 * passes, "photonmapper")
@@ -35,11 +37,26 @@ class Scaling(InFolder):
         self.write(made_up())
         output = self.output_of("scaling")
         for said in ["1000000 photons a pass, 1 thread: 1 s a pass, exponent 1.00", "1000000 hit points, 2 threads: 0.0625 s a pass, "
-                     "exponent 0.50", "10000 hit points: two threads are 1.60 times as fast as one",
+                     "exponent 0.50", "1000000 triangles, 1 thread: 0.0398 s a pass, exponent 0.10", "10000 hit points: two threads are 1.60 times as fast as one",
                      "PPM, 1 to 10000 passes: map from 1 to 1 MiB, exponent 0.00; process from 50 to 50 MiB",
                      "PM, 1 to 10000 passes: map from 1 to 1e+04 MiB, exponent 1.00"]:
             self.assertIn(said, output)
         self.assert_drawn(output, "scaling")
+        self.assert_drawn(output, "cores")
+
+    def test_what_the_second_thread_does_not_shorten_stays_with_more(self):
+        self.write(made_up())
+        self.assertIn("1000000 photons a pass, by the model: 64 cores are 3.8 times as fast as one", self.output_of("scaling"))
+        self.assertEqual(scaling.times_as_fast(1.0, 0.5, 64), 64.0)
+        self.assertEqual(scaling.times_as_fast(1.0, 0.4, 64), 64.0)    # faster than can be: noise
+        self.assertEqual(scaling.times_as_fast(1.0, 1.0, 64), 1.0)
+        self.assertEqual(scaling.times_as_fast(1.0, 1.1, 64), 1.0)
+
+    def test_scenes_are_known_by_their_triangles(self):
+        for name in ["ply-1000.xml", "ply-20.xml", "obj-30.xml", "ply-20-glass.ply"]:
+            (self.results / name).touch()
+        self.assertEqual(scaling.scenes_by_triangles(self.results), {1000: self.results / "ply-1000.xml", 20: self.results / "ply-20.xml"})
+        self.assertEqual(scaling.scenes_by_triangles(None), {})
 
     def test_a_row_is_by_the_pass(self):
         run = {"pass": "4", "integrator": "ppm", "threads": "2", "photons_per_pass": "9", "hit_points": "8", "photons_stored": "7",

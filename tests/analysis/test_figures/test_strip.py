@@ -66,9 +66,18 @@ class Strip(InFolder):
 
     def test_one_method_of_each_kind_is_shown_unless_others_are_asked_for(self):
         found = records.read(self.make_results())
-        self.assertEqual(methods.shown_methods(found, [], False), ["PM, radius", "PPM, α = 0.5"])
-        self.assertEqual(methods.shown_methods(found, [0.9], False), ["PM, radius", "PPM, α = 0.9"])
-        self.assertEqual(methods.shown_methods(found, [], True), found.labels)
+        self.assertEqual(methods.shown_methods(found, [], False, {}), ["PM, radius", "PPM, α = 0.5"])
+        self.assertEqual(methods.shown_methods(found, [], False, {"PPM, α = 0.5": 2.0, "PPM, α = 0.9": 1.0}),
+                         ["PM, radius", "PPM, α = 0.9"])
+        self.assertEqual(methods.shown_methods(found, [0.9], False, {}), ["PM, radius", "PPM, α = 0.9"])
+        self.assertEqual(methods.shown_methods(found, [], True, {}), found.labels)
+
+    def test_of_a_kind_the_method_with_the_least_error_at_the_end_is_the_best(self):
+        made = [row for alpha, first, last in [("0.5", 0.1, 0.04), ("0.9", 0.2, 0.01)]
+                for row in synthetic.rows(lambda seed, number, component: first if number < 64 else last, seeds=[1, 2], alpha=alpha)]
+        synthetic.write_csv(self.results, made)
+        found = strip.errors_at_end(records.read(self.results), "total")
+        self.assertEqual(min(found, key=found.get), "PPM, α = 0.9")
 
     def test_the_command_writes_both_files(self):
         self.make_results()

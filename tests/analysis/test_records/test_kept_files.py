@@ -170,7 +170,7 @@ class KeptFiles(InFolder):
             shutil.rmtree(run)
         stamps.write_merged(self.results)
         for name in ["bias_variance", "equal_time"]:
-            self.assertIn("decomposition.csv: was made from other records than those in iterations.csv; run `analysis decomposition` again",
+            self.assertIn("decomposition.csv: was made from other records than those in iterations.csv; run `photonlab analyse decomposition` again",
                           self.refusal_of(name))
         self.output_of("report")
         text = (self.results / "report.html").read_text()

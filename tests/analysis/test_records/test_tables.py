@@ -3,7 +3,8 @@
 import csv
 import unittest
 
-from photonlab.records import files, tables
+from photonlab.records import files, kept_files, tables
+from photonlab.records.files import InputError
 from support.in_folder import InFolder
 
 TEXTS = ["=1+1", "+1+1", "-1+1", "@SUM(A1)", "\t=1", "\r=1", "'=1", "''=1", "'", "'quoted'", "-", "=", "--", "+-1", "-1", "+2.5e-3", "-nan",
@@ -42,6 +43,23 @@ class Tables(InFolder):
         self.refused("a,b\n1,2\n3\n", "table.csv:3: has 1 fields; the header has 2")
         self.refused("a,a\n1,2\n", "table.csv: names a column twice")
         self.refused('a\n"1\n', "table.csv: is not a table in CSV: unexpected end of data")
+
+
+class Unreadable:
+    """A stream of a disk that fails."""
+
+    def read(self, size):
+        raise OSError(5, "Input/output error")
+
+    def __next__(self):
+        return self.read(1)
+
+
+class Failures(unittest.TestCase):
+    def test_what_cannot_be_read_is_named(self):
+        for read in [lambda: kept_files.hash_of_stream("a.csv", Unreadable()), lambda: tables.table_in("a.csv", Unreadable())]:
+            with self.assertRaisesRegex(InputError, "^a.csv: cannot be read: Input/output error$"):
+                read()
 
 
 if __name__ == "__main__":

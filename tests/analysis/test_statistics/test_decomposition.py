@@ -7,7 +7,8 @@ import unittest
 
 import numpy
 
-from photonlab.records import images
+from photonlab.records import ensembles, images
+from photonlab.records.files import InputError
 from photonlab.statistics.jackknife import jackknife_error
 from photonlab.statistics.moments import Moments, decompose, replicates, standard_errors
 from support import ensembles as made
@@ -174,6 +175,17 @@ class Files(InFolder):
         row = [row for row in self.split() if row["component"] == "gathered" and row["region"] == "image"][-1]
         self.assertAlmostEqual(float(row["variance"]), 0.01, delta=4 * float(row["variance_error"]))
         self.assertEqual((row["squared_bias"], row["mse"], row["reference_floor"]), ("", "", ""))
+
+    def test_what_the_nearest_float_left_belongs_to_the_sum(self):
+        file = self.results / "slot-00.exr"
+        sums = numpy.full((4, 6, 3), 3.0)
+        made.write_layers(file, {"emission": sums, "emission-rest": numpy.full((4, 6, 3), 1e-8)}, [1, 17])
+        seeds, layers = ensembles.read_slot(file, None)
+        self.assertEqual((seeds, list(layers)), ([1, 17], ["emission"]))
+        self.assertTrue(numpy.allclose(layers["emission"], (3.0 + 1e-8) / 2, rtol=0, atol=1e-15))
+        made.write_layers(file, {"emission": sums, "gathered-rest": sums}, [1, 17])
+        with self.assertRaisesRegex(InputError, "expected with each layer of rests that of its sums"):
+            ensembles.read_slot(file, None)
 
     def test_what_does_not_fit_the_records_is_refused(self):
         made.write_ensemble(self.results, "box_ppm", [1, 2, 3], lambda n: 0.0, lambda n: 0.1, self.random)

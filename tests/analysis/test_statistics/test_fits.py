@@ -5,6 +5,7 @@ Intervals hold 95% each; the tests that count how many hold say how many may mis
 import unittest
 
 import numpy
+import pandas
 
 from photonlab.statistics import best_alphas, slopes, theory
 from photonlab.statistics.moments import Moments, decompose
@@ -28,6 +29,17 @@ class Predictions(unittest.TestCase):
             s = (numpy.exp(gammaln(number + 1 + alpha) - gammaln(1 + alpha) - gammaln(number + 1)) - 1) / alpha
             squared = theory.knaus_zwicker_radii(alpha, 64)
             numpy.testing.assert_allclose(numpy.cumsum(squared) / number, s / number, rtol=1e-12)
+
+    def test_of_photons_of_a_sequence_nothing_is_predicted(self):
+        row = {"photons_per_pass": "1000", "direct": "sampled", "alpha": "0.5", "radius_initial": "1", "radius_mean": 1.0,
+               "schedule": "knaus-zwicker", "area": "disc", "light_sequence": "independent"}
+        rows = pandas.DataFrame([row])
+        self.assertEqual(set(theory.predictions(rows, "gathered", 4)), {"variance", "squared_bias", "edge"})
+        self.assertEqual(theory.asymptotes(rows.iloc[0], "gathered")["variance"], (-0.5, None))
+        rows["light_sequence"] = "sobol"
+        self.assertEqual(theory.predictions(rows, "gathered", 4), {})
+        self.assertEqual(theory.asymptotes(rows.iloc[0], "gathered")["variance"], (None, None))
+        self.assertEqual(set(theory.predictions(rows, "direct", 4)), {"variance"})
 
     def test_a_power_has_its_exponent_as_slope(self):
         passes = [4, 8, 16, 32]

@@ -4,8 +4,9 @@ import unittest
 
 import numpy
 
+from photonlab.records import columns, files
 from photonlab.statistics import time_to_error
-from support import synthetic
+from support import stamps, synthetic
 from support.in_folder import InFolder, run
 
 
@@ -26,15 +27,26 @@ class TimeTo(unittest.TestCase):
         self.assertIsNone(time_to_error.time_to(times, numpy.array([0.5, 0.2]), 0.1))
 
 
+    def test_an_error_below_zero_is_met_on_a_straight_line(self):
+        times, errors = numpy.array([1.0, 2, 4, 8]), numpy.array([0.1, 0.02, -1e-4, 0.001])
+        self.assertAlmostEqual(time_to_error.time_to(times, errors, 0.01)[0], 2 * 2 ** (0.01 / 0.0201))
+
+
 class Tables(InFolder):
-    def times(self, relmse, *arguments, floor=1e-9):
+    def times(self, relmse, *arguments, floor=1e-9, unbiased=None):
         """Of PPM with seeds 1 and 2; a pass takes a second, and two of the processor's."""
         made = synthetic.rows(lambda *_: 1e-4, seeds=[1, 2], floor=floor)
         for row in made:
             number = max(1, int(row["pass"]))
             row.update(seconds=str(number), cpu_seconds=str(2 * number),
                        relmse="0" if row["component"] == "emission" else str(relmse(int(row["seed"]), number)))
-        synthetic.write_csv(self.results, made)
+            if unbiased:
+                row.update(relmse_unbiased="0" if row["component"] == "emission" else str(unbiased(int(row["seed"]), number)))
+        synthetic.write_csv(self.results, made, [*synthetic.COLUMNS, "relmse_unbiased"] if unbiased else None)
+        if unbiased:
+            listed = [*files.read_json(columns.BEFORE_DESCRIPTIONS)["columns"],
+                      {"name": "relmse_unbiased", "kind": "measure", "type": "number", "error": True}]
+            stamps.write_with_checksum(self.results / "columns.json", {"schema": 1, "columns": listed})
         output = self.output_of("time_to_error", *arguments)
         rows = self.table("time-to-error.csv")
         self.assertNotIn("emission", {row["component"] for row in rows})
@@ -66,6 +78,12 @@ class Tables(InFolder):
         self.assertAlmostEqual(float(table[0.01, "seconds"]["floor_bound"]), 5e-3)
         self.assertIn("the reference's noise", table[0.01, "seconds"]["note"])
         self.assertNotIn("the reference's noise", table[0.1, "seconds"]["note"])
+
+    def test_errors_that_are_free_of_the_references_noise_are_taken_where_they_are_recorded(self):
+        table, _ = self.times(lambda seed, number: 0.05 + 1 / number, floor=5e-5, unbiased=lambda seed, number: 1 / number - 0.02)
+        row = table[0.01, "seconds"]    # 1 / 0.03, between passes 32 and 64; below 0 by then
+        self.assertTrue(32 < float(row["time"]) < 64)
+        self.assertEqual((row["note"], row["error"]), ("", "relmse_unbiased"))
 
     def test_without_errors_there_are_no_times(self):
         synthetic.write_csv(self.results, synthetic.rows(lambda *_: 1e-4))
