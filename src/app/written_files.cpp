@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "core/files/files.h"
 
 namespace photonlab {
 
@@ -78,6 +79,7 @@ void require_sound_outputs(const std::vector<std::filesystem::path>& inputs, con
         }
         require_name_of_kind(each);
     }
+    for (const WrittenFile& each : written) require_writable(each.file);
 }
 
 }  // namespace photonlab

@@ -35,7 +35,8 @@ struct WrittenFile {
 };
 
 /// Throws InputError where one of them cannot have its name: no file can, or it is one of the inputs, or is written
-/// twice, or is a file of another kind, such as a mesh of the scene, or ends as another kind does.
+/// twice, or is a file of another kind, such as a mesh of the scene, or ends as another kind does; or where it cannot
+/// be written.
 void require_sound_outputs(const std::vector<std::filesystem::path>& inputs, const std::vector<WrittenFile>& written);
 
 }  // namespace photonlab

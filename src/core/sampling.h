@@ -14,6 +14,11 @@ struct ShareChoice {
     float rest;
 };
 
+/// The share of one that gets this much where another gets `other`, neither negative; 0 where both are 0.
+inline float share_beside(float one, float other) {
+    return one + other > 0.0f ? one / (one + other) : 0.0f;
+}
+
 /// `share` in [0, 1].
 inline ShareChoice choose_by_share(float u, float share) {
     constexpr float below_one = 0x1.fffffep-1f;

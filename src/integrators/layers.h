@@ -43,4 +43,10 @@ void set_radii(IntegratorReport& report, std::size_t count, const RadiusOf& radi
     report.radius_max = largest * unit_length;
 }
 
+/// What set_radii() set, one value at a time: between an optional's value and its end lie bytes that mean nothing.
+inline void exchange_radii(StateArchive& archive, IntegratorReport& report) {
+    for (std::optional<double>* radius : {&report.radius_min, &report.radius_mean, &report.radius_max})
+        archive.exchange(*radius);
+}
+
 }  // namespace photonlab

@@ -97,7 +97,7 @@ public:
         archive.exchange_sum(passes_);
         statistics_.exchange(archive);
         archive.exchange_sum(photons_gathered_);
-        archive.exchange(radii_);
+        exchange_radii(archive, radii_);
         rule_->exchange(archive);
         if (error_) error_->exchange(archive);
     }

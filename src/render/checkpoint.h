@@ -17,7 +17,7 @@
 
 namespace photonlab {
 
-inline constexpr std::uint32_t checkpoint_format = 6;          ///< to be raised when a state's exchange() changes
+inline constexpr std::uint32_t checkpoint_format = 7;          ///< to be raised when a state's exchange() changes
 inline constexpr double default_seconds_between_saves = 30.0;  ///< of all long work
 
 /// Where a run keeps its state.

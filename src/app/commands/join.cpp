@@ -72,7 +72,6 @@ void require_room_for(const JoinOptions& options, const std::vector<PartFile>& p
         written.push_back({"--csv", columns_file(options.csv), nullptr});
     }
     require_sound_outputs(inputs, written);
-    for (const WrittenFile& each : written) require_writable(each.file);
 }
 
 /// Which passes there are.

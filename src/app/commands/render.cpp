@@ -149,7 +149,6 @@ void require_room_for(const RenderOptions& options, const std::vector<std::uint6
     inputs.push_back(options.scene);
     const std::vector<WrittenFile> written = written_files(options, snapshots);
     require_sound_outputs(inputs, written);
-    for (const WrittenFile& each : written) require_writable(each.file);
     const auto pixels =
         static_cast<std::uint64_t>(scene.camera.width) * static_cast<std::uint64_t>(scene.camera.height);
     require_space(options.output.parent_path(), 4 * sizeof(Color) * pixels * (1 + snapshots.size()),

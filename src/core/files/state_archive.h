@@ -22,7 +22,8 @@
 
 namespace photonlab {
 
-/// A number, or a struct of numbers without gaps.
+/// A number, or a struct of numbers without gaps: what lies in a gap is no value, and states would not be the same
+/// bits. No compiler of ours can tell; tests/integrators/continuation_test.cpp does.
 template <typename Value>
 concept PlainValue =
     std::is_standard_layout_v<Value> && std::is_trivially_destructible_v<Value> && !std::is_pointer_v<Value>;

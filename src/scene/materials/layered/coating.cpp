@@ -40,7 +40,7 @@ Color Coating::let_through(const Refracted& outgoing, const Refracted& incoming)
 float Coating::coat_share(const Refracted& outgoing) const {
     const auto coat = static_cast<float>(outgoing.reflected) * max_channel(specular_reflectance);
     const auto below = static_cast<float>(1.0 - outgoing.reflected);
-    return coat + below > 0.0f ? coat / (coat + below) : 0.0f;
+    return share_beside(coat, below);
 }
 
 SpecularBranches Coating::branches(const Vector& outgoing, Carried carried) const {

@@ -15,9 +15,7 @@ Color Phong::evaluate(const Vector& outgoing, const Vector& incoming) const {
 }
 
 float Phong::lobe_share() const {
-    const float lobe = max_channel(specular_reflectance);
-    const float both = lobe + max_channel(diffuse_reflectance);
-    return both > 0.0f ? lobe / both : 0.0f;
+    return share_beside(max_channel(specular_reflectance), max_channel(diffuse_reflectance));
 }
 
 std::optional<BsdfSample> Phong::sample(const Vector& outgoing, Carried, const Imath::V2f& u) const {

@@ -141,7 +141,7 @@ float RoughPlastic::coat_share(float cosine) const {
     const float let_in = let_in_at(cosine);
     const float of_coat = (1.0f - let_in) * max_channel(specular_reflectance);
     const float of_base = let_in * max_channel(diffuse_reflectance);
-    return of_coat + of_base > 0.0f ? of_coat / (of_coat + of_base) : 0.0f;
+    return share_beside(of_coat, of_base);
 }
 
 std::optional<BsdfSample> RoughPlastic::sample(const Vector& outgoing, Carried, const Imath::V2f& u) const {

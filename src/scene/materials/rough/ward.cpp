@@ -33,9 +33,7 @@ Color Ward::evaluate(const Vector& outgoing, const Vector& incoming) const {
 }
 
 float Ward::lobe_share() const {
-    const float lobe = max_channel(specular_reflectance);
-    const float both = lobe + max_channel(diffuse_reflectance);
-    return both > 0.0f ? lobe / both : 0.0f;
+    return share_beside(max_channel(specular_reflectance), max_channel(diffuse_reflectance));
 }
 
 std::optional<BsdfSample> Ward::sample(const Vector& outgoing, Carried, const Imath::V2f& u) const {

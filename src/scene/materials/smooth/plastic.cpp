@@ -34,7 +34,7 @@ float Plastic::coat_share(float cosine) const {
     const auto reflected = static_cast<float>(reflected_at(*this, cosine));
     const float coat = reflected * max_channel(specular_reflectance);
     const float base = (1.0f - reflected) * max_channel(diffuse_reflectance);
-    return coat + base > 0.0f ? coat / (coat + base) : 0.0f;
+    return share_beside(coat, base);
 }
 
 std::optional<BsdfSample> Plastic::sample(const Vector& outgoing, Carried carried, const Imath::V2f& u) const {
