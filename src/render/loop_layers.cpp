@@ -14,10 +14,10 @@ namespace {
 /// Connections whose shadow rays wait for each other, to be traced eight at a time.
 class WaitingConnections {
 public:
-    /// Once traced, the connection's contribution is added to `sum` if nothing blocks it.
-    void add(const Scene& scene, const LightConnection& connection, ColorD& sum) {
+    /// Once traced, the connection's contribution times `weight` is added to `sum` if nothing blocks it.
+    void add(const Scene& scene, const LightConnection& connection, double weight, ColorD& sum) {
         segments_[count_] = connection.segment;
-        contributions_[count_] = connection.light.contribution;
+        contributions_[count_] = connection.light.contribution * weight;
         sums_[count_] = &sum;
         if (++count_ == capacity) trace(scene);
     }
@@ -77,9 +77,13 @@ void LoopLayers::add_samples(const HitPoints& hit_points, std::uint64_t pass, st
         if (!depth_allows(settings_.max_depth, point.camera_edges + 1u)) continue;
         RandomStream random = streams[i];
         const Surface surface = surface_at(scene_, point);
+        const bool by_both = may_be_narrow(surface.bsdf);
+        ColorD& sum = sum_of[i - range.begin];
         for (int sample = 0; sample < settings_.direct_samples; ++sample) {
             const auto connection = draw_connection(scene_, surface, point.outgoing, random);
-            if (connection) waiting.add(scene_, *connection, sum_of[i - range.begin]);
+            if (connection)
+                waiting.add(scene_, *connection, by_both ? weight_of_connection(connection->light) : 1.0, sum);
+            if (by_both) sum += light_along_lobe(scene_, surface, point.outgoing, random);
         }
     }
     waiting.trace(scene_);

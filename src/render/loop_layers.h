@@ -1,7 +1,8 @@
 // The layers that the loop over passes makes, whatever the method: emission, which the camera sees by mirrors and glass
-// alone, and direct light, sampled by shadow rays at the hit points in every pass and averaged over passes. Where
-// camera paths go on from glossy surfaces, they bring light of all three layers, and shadow rays at their ends light
-// that was scattered twice, which is of the layer gathered.
+// alone, and direct light, sampled by shadow rays at the hit points in every pass, where lobes may be narrow by
+// directions drawn from them as well, and averaged over passes. Where camera paths go on from glossy surfaces, they
+// bring light of all three layers, and shadow rays at their ends light that was scattered twice, which is of the layer
+// gathered.
 //
 // Where hit points are the same in every pass, sums are kept at the points; where they are new, in pixels.
 

@@ -35,6 +35,11 @@ std::optional<LightConnection> draw_connection(const Scene& scene, const Surface
 std::optional<ConnectedLight> connect_to_light(const Scene& scene, const Surface& surface, const Vector& outgoing,
                                                RandomStream& random);
 
+/// Light that the surface reflects from a direction drawn from its BSDF, times weight_of_ray(): with draw_connection()
+/// and weight_of_connection(), direct light by both techniques. Nothing from single directions, which the camera pass
+/// follows. Always draws the same number of random numbers.
+ColorD light_along_lobe(const Scene& scene, const Surface& surface, const Vector& outgoing, RandomStream& random);
+
 /// Weights of the balance heuristic for light that is found twice, by a connection and by the ray that goes on, which
 /// was drawn from the BSDF with `bsdf_density` per steradian; 0: in a single direction, which no connection finds.
 /// [Veach & Guibas 1995, "Optimally Combining Sampling Techniques"]

@@ -126,6 +126,34 @@ TEST(RoomOfGlossyBalls, HoldsAllLightOnceWherePhotonsCarryIt) {
     EXPECT_EQ(means.direct, none);
 }
 
+// Direct light of hit points on narrow lobes, by a connection and a drawn direction together. By connections alone the
+// second moment below is 33 times path tracing's: few connections are within the lobe, and those weigh much.
+TEST(HitPointsOnNarrowLobes, FindDirectLightAsPathTracingDoes) {
+    SceneDescription description;
+    description.materials = {rough_metal(0.01f), diffuse(Color(0.0f))};
+    description.shapes = {disk(VectorD(0.0), VectorD(0, 0, 1), 5.0, 0)};
+    description.shapes.push_back(
+        shape(parallelogram(VectorD(-14, -4, 20), VectorD(0, 8, 0), VectorD(8, 0, 0)), 1, ColorD(2.0)));
+    description.camera = look_at(VectorD(10, 0, 20), VectorD(0.0), 8, 8, 12.0);
+    const Scene scene = build_scene(description);
+    const HitPoints points = trace_hit_points(scene, 1, 1);
+    const auto squares_of = [&](const MethodSettings& method, std::vector<double>& means) {
+        double squares = 0.0;
+        for (std::uint64_t seed = 1; seed <= 64; ++seed) {
+            const Image image = render(scene, points, method, {.passes = 1, .seed = seed}).image;
+            means.push_back(mean_of(image, direct_layer).y);
+            for (const Color& pixel : *image.find(direct_layer)) squares += pixel.y * pixel.y;
+        }
+        return squares;
+    };
+    std::vector<double> of_ppm, of_path;
+    const double squares = squares_of({.integrator = "ppm", .photons_per_pass = 10}, of_ppm);
+    const double expected = squares_of({.integrator = "path"}, of_path);
+    ClaimFamily claims;
+    claims.means_agree("direct", of_ppm, of_path, 0.02);
+    EXPECT_NEAR(squares / expected, 1.0, 0.1);
+}
+
 // A light without size is found by connections alone.
 TEST(GoingOn, FindsLightWithoutSize) {
     SceneDescription description = room(24, 24);

@@ -100,6 +100,13 @@ concept Uniform = requires(const Kind& bsdf) {
     { bsdf.uniform_value() } -> std::same_as<Color>;
 };
 
+/// A scattering lobe as wide as Lambert's, at least nearly: drawing directions to the lights finds its direct light
+/// well. Kinds that do not say so may be narrow.
+template <typename Kind>
+concept Wide = Scattering<Kind> && requires {
+    requires Kind::is_wide;
+};
+
 /// A scattering lobe that is all there is, and may be narrow: a camera path may go on from it in a drawn direction.
 /// roughness() is Mitsuba's alpha.
 template <typename Kind>

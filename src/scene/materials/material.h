@@ -143,6 +143,11 @@ inline bool is_scattering(const Bsdf& bsdf) {
         bsdf);
 }
 
+/// True where the light that is spread may be spread little.
+inline bool may_be_narrow(const Bsdf& bsdf) {
+    return visit_bsdf([]<typename B>(const B&) { return Scattering<B> && !Wide<B>; }, bsdf);
+}
+
 /// f, where it is the same for all directions above the surface.
 inline std::optional<Color> uniform_value(const Bsdf& bsdf) {
     return visit_bsdf(

@@ -12,6 +12,7 @@ namespace photonlab {
 struct RoughDiffuse {
     static constexpr const char* name = "roughdiffuse";
     static constexpr bool is_transmissive = false;
+    static constexpr bool is_wide = true;
 
     Color reflectance = Color(0.5f);  ///< of a facet, in [0, 1] a channel
     float alpha = 0.2f;               ///< roughness as Mitsuba's, at least 0: sqrt(2) times the standard deviation of

@@ -11,6 +11,7 @@ namespace photonlab {
 struct Diffuse {
     static constexpr const char* name = "diffuse";
     static constexpr bool is_transmissive = false;
+    static constexpr bool is_wide = true;
 
     Color reflectance = Color(0.5f);  ///< in [0, 1] a channel
 

@@ -12,6 +12,7 @@ namespace photonlab {
 struct Plastic {
     static constexpr const char* name = "plastic";
     static constexpr bool is_transmissive = false;
+    static constexpr bool is_wide = true;
 
     float index_outside = 1.0f;                ///< above 0
     float index_inside = 1.49f;                ///< of the coat, above 0
