@@ -54,8 +54,8 @@ public:
         });
         guarded([&] { check_experiment(); });
         guarded([&] { check_merged(); });
-        for (const auto& [name, run] : finished_)
-            if (run.reference) guarded([&] { check_reference(name, *run.reference); });
+        for (const auto& run : finished_)
+            if (run.second.reference) guarded([&] { check_reference(run.first, *run.second.reference); });
         if (unfinished_ > 0) note(results_ / "runs", fmt::format("{} runs are not finished", unfinished_));
         return std::move(found_);
     }
