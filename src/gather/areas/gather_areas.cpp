@@ -7,6 +7,10 @@ namespace photonlab {
 
 namespace {
 
+Imath::V2d slope_of(const AreaWeights& weights, double radius) {
+    return Imath::V2d(weights.slope_u, weights.slope_v) / radius;
+}
+
 /// Radii are told apart by octaves and parts of these, from one that holds the scene around any point of it down to
 /// where lines see nothing any more.
 constexpr double largest_radius = 2.0;
@@ -86,18 +90,12 @@ private:
 
 GatherArea::GatherArea(const SurfaceEnd& point, double radius, const AreaWeights& weights,
                        std::shared_ptr<const FlatSurroundings> walls)
-    : is_whole_(false),
-      walls_(std::move(walls)),
-      point_(point),
-      frame_(make_frame(point.geometric_normal)),
-      constant_(weights.constant),
-      slope_(Imath::V2d(weights.slope_u, weights.slope_v) / radius) {}
+    : part_(std::make_shared<const Part>(Part{std::move(walls), false, point, make_frame(point.geometric_normal),
+                                              weights.constant, slope_of(weights, radius)})) {}
 
 GatherArea::GatherArea(const SurfaceEnd& point, double radius, const AreaWeights& weights, bool tests_reach)
-    : GatherArea(point, radius, weights, nullptr) {
-    tests_reach_ = tests_reach;
-    frame_ = make_frame(point.normal);
-}
+    : part_(std::make_shared<const Part>(
+          Part{nullptr, tests_reach, point, make_frame(point.normal), weights.constant, slope_of(weights, radius)})) {}
 
 GatherAreas::GatherAreas(const Scene& scene, const GatherAreaSettings& settings, std::size_t points)
     : scene_(scene),

@@ -22,7 +22,8 @@
 
 namespace photonlab {
 
-/// At one point, for one radius. By default of a whole disc.
+/// At one point, for one radius. By default of a whole disc, which most are: of the others the rest lies elsewhere, so
+/// that the areas of many points are close together.
 class GatherArea {
 public:
     GatherArea() = default;
@@ -33,25 +34,30 @@ public:
     GatherArea(const SurfaceEnd& point, double radius, const AreaWeights& weights, bool tests_reach);
 
     /// Every accepted photon counts by the kernel alone.
-    bool is_whole() const { return is_whole_; }
+    bool is_whole() const { return !part_; }
 
-    /// What a photon's kernel weight is multiplied by; empty for one out of reach, which is not accepted.
+    /// What a photon's kernel weight is multiplied by; empty for one out of reach, which is not accepted. Not of whole
+    /// discs.
     std::optional<double> weight(const Scene& scene, const Photon& photon) const {
-        const Vector offset = photon.position - point_.position;
-        const Imath::V2d in_plane(offset.dot(frame_.tangent), offset.dot(frame_.bitangent));
-        if (walls_ && is_hidden(*walls_, in_plane)) return std::nullopt;
-        if (tests_reach_ && !is_in_reach(scene, point_, photon)) return std::nullopt;
-        return constant_ + slope_.dot(in_plane);
+        const Vector offset = photon.position - part_->point.position;
+        const Imath::V2d in_plane(offset.dot(part_->frame.tangent), offset.dot(part_->frame.bitangent));
+        if (part_->walls && is_hidden(*part_->walls, in_plane)) return std::nullopt;
+        if (part_->tests_reach && !is_in_reach(scene, part_->point, photon)) return std::nullopt;
+        return part_->constant + part_->slope.dot(in_plane);
     }
 
+    static std::uint64_t most_bytes() { return sizeof(GatherArea) + sizeof(Part); }
+
 private:
-    bool is_whole_ = true;
-    bool tests_reach_ = false;
-    std::shared_ptr<const FlatSurroundings> walls_;
-    SurfaceEnd point_;
-    Frame frame_;
-    double constant_ = 1.0;
-    Imath::V2d slope_ = Imath::V2d(0.0);  // per unit of length
+    struct Part {
+        std::shared_ptr<const FlatSurroundings> walls;
+        bool tests_reach;
+        SurfaceEnd point;
+        Frame frame;
+        double constant;
+        Imath::V2d slope;  // per unit of length
+    };
+    std::shared_ptr<const Part> part_;
 };
 
 struct GatherAreaSettings {
