@@ -36,9 +36,9 @@ public:
     /// Every accepted photon counts by the kernel alone.
     bool is_whole() const { return !part_; }
 
-    /// What a photon's kernel weight is multiplied by; empty for one out of reach, which is not accepted. Not of whole
-    /// discs.
+    /// What a photon's kernel weight is multiplied by; empty for one out of reach, which is not accepted.
     std::optional<double> weight(const Scene& scene, const Photon& photon) const {
+        if (is_whole()) return 1.0;
         const Vector offset = photon.position - part_->point.position;
         const Imath::V2d in_plane(offset.dot(part_->frame.tangent), offset.dot(part_->frame.bitangent));
         if (part_->walls && is_hidden(*part_->walls, in_plane)) return std::nullopt;
