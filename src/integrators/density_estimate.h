@@ -197,6 +197,12 @@ inline SurfaceEnd surface_end(const Scene& scene, const HitPoint& point) {
             may_scatter_through(material)};
 }
 
+/// The area within a radius (unit box) around one of the hit points that stay.
+inline GatherArea area_around(GatherAreas& areas, const Scene& scene, const HitPoint& point, std::size_t index,
+                              double radius) {
+    return areas.are_discs() ? GatherArea() : areas.at(surface_end(scene, point), index, radius);
+}
+
 /// Radii that can be asked for, in shares of the scene (unit box). Float positions near its walls are 3e-8 apart: a
 /// disc of 1e-6 still has its area to 0.2%, one of 1e-7 to 5%. The largest is largest_length.
 inline constexpr double smallest_initial_radius = 1e-7;

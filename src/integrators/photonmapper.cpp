@@ -125,8 +125,8 @@ private:
                     ? gather_within(map, context_.scene, points, order_, range, settings_,
                                     [&](std::size_t i, const HitPoint& point) {
                                         return GatherReach{.radius = search.radii[i],
-                                                           .area = search.areas.at(surface_end(context_.scene, point),
-                                                                                   i, search.radii[i])};
+                                                           .area = area_around(search.areas, context_.scene, point, i,
+                                                                               search.radii[i])};
                                     })
                     : gather_nearest(map, search, range);
             for (std::size_t i = range.begin; i < range.end; ++i) {
@@ -149,7 +149,7 @@ private:
             const NearestPhotons nearest = map.nearest(
                 query_at(context_.scene, point, search.max_radius), search.k,
                 [&](const Photon& photon, double squared_distance, double squared_radius) {
-                    if (!area) area = search.areas.at(surface_end(context_.scene, point), i, std::sqrt(squared_radius));
+                    if (!area) area = area_around(search.areas, context_.scene, point, i, std::sqrt(squared_radius));
                     at.add(context_.scene, photon, 1, squared_distance, squared_radius, *area, settings_.kernel);
                 },
                 settings_.eps);

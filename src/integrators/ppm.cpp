@@ -137,7 +137,7 @@ private:
     /// In the pass that is number `passes` of those taken here.
     GatherReach reach_of(std::size_t i, const HitPoint& point, std::uint64_t passes) {
         GatherReach reach{.radius = std::sqrt(statistics_[i].squared_radius)};
-        reach.area = areas_.at(surface_end(context_.scene, point), i, reach.radius);
+        reach.area = area_around(areas_, context_.scene, point, i, reach.radius);
         if (wants_curvature(settings_, *rule_))
             reach.bandwidth =
                 std::sqrt(squared_curvature_bandwidth(settings_.laplacian_radius, initial_squared_radius(i), passes));

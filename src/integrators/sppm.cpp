@@ -197,7 +197,8 @@ private:
     /// In the pass that is number `passes` of those taken here.
     GatherReach reach_of(const Pass& pass, std::size_t i, const HitPoint& point, std::uint64_t passes) const {
         GatherReach reach{.radius = gather_radius_at(pass.points, i, point.pixel)};
-        reach.area = areas_.of_pass(surface_end(context_.scene, point), i, pass.number, reach.radius);
+        if (!areas_.are_discs())
+            reach.area = areas_.of_pass(surface_end(context_.scene, point), i, pass.number, reach.radius);
         if (wants_curvature(settings_, *rule_)) {
             const double unit = initial_radius_at(pass.points, i);
             reach.bandwidth = std::sqrt(squared_curvature_bandwidth(settings_.laplacian_radius, unit * unit, passes));

@@ -72,6 +72,9 @@ public:
     GatherAreas(const Scene& scene, const GatherAreaSettings& settings, std::size_t points);
     ~GatherAreas();
 
+    /// The area of the disc is taken whatever is there, so that no point need be told.
+    bool are_discs() const { return settings_.mode == AreaMode::Disc; }
+
     /// Of the hit point `index`, which is `point`. Different ones may be asked for at the same time.
     GatherArea at(const SurfaceEnd& point, std::size_t index, double radius);
 
@@ -98,7 +101,7 @@ private:
 
     /// The area of the disc is taken whatever is there: so that of points that gather from two sides, of which each has
     /// surroundings of its own.
-    bool is_of_disc(const SurfaceEnd& point) const { return settings_.mode == AreaMode::Disc || point.has_other_side; }
+    bool is_of_disc(const SurfaceEnd& point) const { return are_discs() || point.has_other_side; }
     bool is_whole(const SurfaceEnd& point, Known& known, double radius) const;
     AreaWeights weights_of(const AreaMoments& moments) const;
     GatherArea area_of(const SurfaceEnd& point, const FlatArea& flat,

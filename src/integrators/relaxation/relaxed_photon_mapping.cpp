@@ -67,7 +67,7 @@ public:
             const auto found = gather_within(
                 shown_, context_.scene, points, order_, range, settings_, [&](std::size_t i, const HitPoint& point) {
                     return GatherReach{.radius = radii_[i],
-                                       .area = areas_.at(surface_end(context_.scene, point), i, radii_[i])};
+                                       .area = area_around(areas_, context_.scene, point, i, radii_[i])};
                 });
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 const FluxSum& sum = found[i - range.begin].sum;

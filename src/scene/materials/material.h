@@ -69,7 +69,7 @@ template <typename Visitor>
 /// std::visit, with Lambert's law first: of as many kinds as these the standard library makes a table of functions,
 /// none of which is inlined, and most surfaces are diffuse.
 template <typename Visitor>
-auto visit_bsdf(const Visitor& visitor, const Bsdf& bsdf) {
+[[gnu::always_inline]] inline auto visit_bsdf(const Visitor& visitor, const Bsdf& bsdf) {
     if (const auto* diffuse = std::get_if<Diffuse>(&bsdf)) return visitor(*diffuse);
     return visit_any_bsdf(visitor, bsdf);
 }

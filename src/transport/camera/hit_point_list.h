@@ -51,7 +51,7 @@ public:
 
     std::size_t size() const { return records_.size(); }
     bool empty() const { return records_.empty(); }
-    HitPoint operator[](std::size_t index) const {
+    [[gnu::always_inline]] HitPoint operator[](std::size_t index) const {
         const Record& record = records_[index];
         const bool is_plain = (record.seen & of_view) == 0;
         const std::uint32_t view_index = record.seen & ~of_view;

@@ -101,10 +101,10 @@ void follow_light(const Scene& scene, const PhotonSettings& settings, const Emis
         const std::optional<Surface> surface = orient(scene, *hit, arriving);
         if (edges > 1 || settings.store_direct) {
             // Where a texture turns the normal, the path may end though a point nearby can gather the photon.
-            if (has_turned_normals(scene.materials[scene.shapes[hit->shape].material]))
-                store(orient_to_gather(scene, *hit, arriving), {arriving, power, edges, only_specular}, result);
-            else
-                store(surface, {arriving, power, edges, only_specular}, result);
+            const bool is_turned = has_turned_normals(scene.materials[scene.shapes[hit->shape].material]);
+            const std::optional<Surface> turned_back =
+                is_turned ? orient_to_gather(scene, *hit, arriving) : std::nullopt;
+            store(is_turned ? turned_back : surface, {arriving, power, edges, only_specular}, result);
         }
         if (!surface) return;
         if (edges == edge_limit) break;
