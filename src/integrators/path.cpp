@@ -13,7 +13,6 @@
 #include "integrators/layers.h"
 #include "integrators/pass_sums.h"
 #include "integrators/registry.h"
-#include "scene/emitter.h"
 #include "transport/direct_light.h"
 #include "transport/path_length.h"
 
@@ -55,21 +54,16 @@ PathSample trace_path(const Scene& scene, const HitPoint& point, int max_depth, 
         if (!sides_agree(surface, direction)) break;
         throughput *= bounce->weight;
 
-        const auto hit =
-            intersect(scene, {offset_from_surface(surface.position, surface.geometric_normal, direction), direction});
-        const ColorD emitted = hit ? emitted_radiance(scene, *hit, -direction) : escaped_radiance(scene, direction);
-        if (!is_black(emitted)) {
-            const double weight = weight_of_ray(scene, surface.position, direction, hit, bounce->density);
-            layer += ColorD(throughput) * emitted * weight;
-        }
-        if (!hit) break;
+        const LobeRay ray = follow_lobe(scene, surface, direction, bounce->density, throughput);
+        layer += ray.light;
+        if (!ray.hit) break;
 
         if (reflections >= roulette_after) {
             const float survival = std::min(max_channel(throughput), highest_survival);
             if (survival_draw >= survival) break;
             throughput /= survival;
         }
-        const auto next = orient(scene, *hit, -direction);
+        const auto next = orient(scene, *ray.hit, -direction);
         if (!next) break;
         surface = *next;
         outgoing = -direction;

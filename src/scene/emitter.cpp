@@ -50,6 +50,10 @@ ColorD escaped_radiance(const Scene& scene, const Vector& direction) {
         scene.emitters[*scene.environment].kind);
 }
 
+ColorD met_radiance(const Scene& scene, const std::optional<Hit>& hit, const Vector& direction) {
+    return hit ? emitted_radiance(scene, *hit, -direction) : escaped_radiance(scene, direction);
+}
+
 double escaped_density(const Scene& scene, const Vector& direction) {
     if (!scene.environment) return 0.0;
     return std::visit(

@@ -46,4 +46,7 @@ double escaped_density(const Scene& scene, const Vector& direction);
 /// Radiance that leaves the hit point towards `outgoing` (unit, away from the surface); 0 where nothing emits.
 ColorD emitted_radiance(const Scene& scene, const Hit& hit, const Vector& outgoing);
 
+/// Radiance that a ray along `direction` (unit) finds at what it meets; `hit` is empty where it leaves the scene.
+ColorD met_radiance(const Scene& scene, const std::optional<Hit>& hit, const Vector& direction);
+
 }  // namespace photonlab

@@ -48,16 +48,22 @@ std::optional<ConnectedLight> connect_to_light(const Scene& scene, const Surface
     return connection->light;
 }
 
+LobeRay follow_lobe(const Scene& scene, const Surface& surface, const Vector& direction, float bsdf_density,
+                    const Color& throughput) {
+    const auto hit =
+        intersect(scene, {offset_from_surface(surface.position, surface.geometric_normal, direction), direction});
+    const ColorD emitted = met_radiance(scene, hit, direction);
+    if (is_black(emitted)) return {hit, ColorD(0.0)};
+    const double weight = weight_of_ray(scene, surface.position, direction, hit, bsdf_density);
+    return {hit, ColorD(throughput) * emitted * weight};
+}
+
 ColorD light_along_lobe(const Scene& scene, const Surface& surface, const Vector& outgoing, RandomStream& random) {
     const auto drawn = sample(surface.bsdf, surface.frame.to_local(outgoing), Carried::Radiance, random.next_2d());
     if (!drawn || !(drawn->density > 0.0f)) return ColorD(0.0);
     const Vector direction = surface.frame.to_world(drawn->incoming);
     if (!sides_agree(surface, direction)) return ColorD(0.0);
-    const auto hit =
-        intersect(scene, {offset_from_surface(surface.position, surface.geometric_normal, direction), direction});
-    const ColorD emitted = hit ? emitted_radiance(scene, *hit, -direction) : escaped_radiance(scene, direction);
-    if (is_black(emitted)) return ColorD(0.0);
-    return ColorD(drawn->weight) * emitted * weight_of_ray(scene, surface.position, direction, hit, drawn->density);
+    return follow_lobe(scene, surface, direction, drawn->density, drawn->weight).light;
 }
 
 double weight_of_connection(const ConnectedLight& light) {

@@ -35,6 +35,17 @@ std::optional<LightConnection> draw_connection(const Scene& scene, const Surface
 std::optional<ConnectedLight> connect_to_light(const Scene& scene, const Surface& surface, const Vector& outgoing,
                                                RandomStream& random);
 
+/// What the ray in a direction drawn from a surface's BSDF meets.
+struct LobeRay {
+    std::optional<Hit> hit;  ///< empty where it leaves the scene
+    ColorD light;            ///< that it brings, times weight_of_ray()
+};
+
+/// Follows the ray along `direction`, which was drawn with `bsdf_density`; light that it meets is multiplied by
+/// `throughput`.
+LobeRay follow_lobe(const Scene& scene, const Surface& surface, const Vector& direction, float bsdf_density,
+                    const Color& throughput);
+
 /// Light that the surface reflects from a direction drawn from its BSDF, times weight_of_ray(): with draw_connection()
 /// and weight_of_connection(), direct light by both techniques. Nothing from single directions, which the camera pass
 /// follows. Always draws the same number of random numbers.

@@ -237,8 +237,7 @@ private:
                       Tile& tile) const {
         const std::optional<Hit> hit = intersect(scene_, branch.ray);
         const Vector outgoing = -branch.ray.direction;
-        const ColorD emitted =
-            hit ? emitted_radiance(scene_, *hit, outgoing) : escaped_radiance(scene_, branch.ray.direction);
+        const ColorD emitted = met_radiance(scene_, hit, branch.ray.direction);
         if (!is_black(emitted)) see(branch, hit, emitted, pixel, tile);
         if (!hit) return;
         const std::optional<Surface> surface = orient(scene_, *hit, outgoing);
