@@ -3,15 +3,14 @@
 
 #pragma once
 
-#include <atomic>
 #include <cmath>
 #include <string_view>
 #include <vector>
 
-#include "core/exact_sum.h"
 #include "gather/radii/adaptive_radius.h"
 #include "gather/radii/radius_rule.h"
 #include "integrators/density_estimate.h"
+#include "integrators/pass_sums.h"
 
 namespace photonlab {
 
@@ -108,7 +107,7 @@ class RegionStatistics {
 public:
     RegionStatistics(std::size_t regions, double squared_radius, bool can_be_joined)
         : statistics_(regions, GatherStatistics{.squared_radius = squared_radius}),
-          rests_(can_be_joined ? regions : 0, ColorD(0.0)) {}
+          rests_(can_be_joined ? regions : 0) {}
 
     std::size_t size() const { return statistics_.size(); }
     GatherStatistics& operator[](std::size_t region) { return statistics_[region]; }
@@ -117,46 +116,32 @@ public:
     /// take_pass() of one region; on any thread.
     void take(std::size_t region, RadiusRule& rule, const PassGather& gathered) {
         GatherStatistics& at = statistics_[region];
-        if (rests_.empty()) return take_pass(at, rule, region, gathered, smallest_squared_radius);
-        if (const unsigned inexact = add_exactly(at.estimate, rests_[region], rounded_to_float_bits(gathered.estimate)))
-            std::atomic_ref(inexact_).fetch_add(inexact, std::memory_order_relaxed);
+        if (!rests_.are_kept()) return take_pass(at, rule, region, gathered, smallest_squared_radius);
+        rests_.add(at.estimate, region, gathered.estimate);
         take_radius(at, rule, region, gathered, smallest_squared_radius);
     }
 
     /// Mean over so many passes of their own estimates.
     ColorD estimate(std::size_t region, std::uint64_t passes) const {
         const ColorD& kept = statistics_[region].estimate;
-        return rests_.empty() || passes == 0 ? kept : kept / static_cast<double>(passes);
+        return !rests_.are_kept() || passes == 0 ? kept : kept / static_cast<double>(passes);
     }
 
-    std::uint64_t inexact_additions() const { return inexact_; }
-    std::uint64_t bytes() const {
-        return statistics_.size() * sizeof(GatherStatistics) + rests_.size() * sizeof(ColorD);
-    }
+    std::uint64_t inexact_additions() const { return rests_.inexact_additions(); }
+    std::uint64_t bytes() const { return statistics_.size() * sizeof(GatherStatistics) + rests_.bytes(); }
 
     void exchange(StateArchive& archive) {
-        if (!archive.joins()) return exchange_all(archive);
-        RegionStatistics read(size(), 0.0, !rests_.empty());
-        read.exchange_all(archive);
-        inexact_ += read.inexact_;
-        for (std::size_t i = 0; i < rests_.size(); ++i) {
-            statistics_[i].squared_radius = read[i].squared_radius;
-            statistics_[i].count += read[i].count;
-            for (const ColorD& part : {read[i].estimate, read.rests_[i]})
-                inexact_ += add_exactly(statistics_[i].estimate, rests_[i], part);
-        }
+        rests_.exchange_with(statistics_, archive,
+                             [](GatherStatistics& here, const GatherStatistics& read, const auto& add) {
+                                 here.squared_radius = read.squared_radius;
+                                 here.count += read.count;
+                                 add(here.estimate, read.estimate);
+                             });
     }
 
 private:
-    void exchange_all(StateArchive& archive) {
-        archive.exchange_as_many(statistics_);
-        archive.exchange_as_many(rests_);
-        archive.exchange(inexact_);
-    }
-
     std::vector<GatherStatistics> statistics_;
-    std::vector<ColorD> rests_;  // what the estimates are short of; none where they are running means
-    std::uint64_t inexact_ = 0;
+    SumRests rests_;  // of the estimates; none where they are running means
 };
 
 /// The discs of a pass, for Integrator::accepting_discs(): `reach_of(index, point)` is what its gather asks for.
