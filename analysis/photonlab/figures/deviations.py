@@ -7,16 +7,11 @@ The scene is a furnace cut by a thin slab, whose answer is exact (tests/statisti
 where each deviation is or was. Bars are one standard error over seeds, where they are larger than the mark.
 """
 
-from dataclasses import dataclass
-from pathlib import Path
-
 from matplotlib import lines
 
-from photonlab.command import Command
-from photonlab.drawing import style
+from photonlab.drawing import one_table, style
 from photonlab.drawing.panels import panels_over_legend, set_titles
-from photonlab.drawing.saving import Drawn
-from photonlab.records import kept_files, tables
+from photonlab.records import tables
 from photonlab.records.files import InputError
 
 NAME = "deviations.csv"
@@ -74,22 +69,5 @@ def draw(table):
     return figure
 
 
-@dataclass
-class Measured:
-    """A folder with deviations.csv."""
-    folder: Path
-
-    @property
-    def hash(self):
-        return kept_files.hash_of_file(self.folder / NAME)
-
-
-def make(results, options):
-    table = read(results.folder / NAME)
-    yield from statements(table)
-    yield Drawn("deviations", draw(table, **options.look))
-
-
-COMMAND = Command(
-    name="deviations", draws=True, summary="what other programs do differently, beside the right update", about=__doc__,
-    writes="figures/deviations.png and .pdf", make=make, starts_from=NAME, read=Measured)
+COMMAND = one_table.command_of("deviations", NAME, read, statements, draw, about=__doc__,
+                                summary="what other programs do differently, beside the right update")

@@ -8,16 +8,11 @@ Photons are laid by hand (tests/integrators/relaxation_records.cpp). What pictur
 experiments/replications/relaxation.toml.
 """
 
-from dataclasses import dataclass
-from pathlib import Path
-
 from matplotlib import lines
 
-from photonlab.command import Command
-from photonlab.drawing import style
+from photonlab.drawing import one_table, style
 from photonlab.drawing.panels import panels_over_legend, set_titles
-from photonlab.drawing.saving import Drawn
-from photonlab.records import kept_files, tables
+from photonlab.records import tables
 
 NAME = "relaxation.csv"
 COLUMNS = ["kind", "stage", "x", "y"]
@@ -84,22 +79,5 @@ def draw(table):
     return figure
 
 
-@dataclass
-class Measured:
-    """A folder with relaxation.csv."""
-    folder: Path
-
-    @property
-    def hash(self):
-        return kept_files.hash_of_file(self.folder / NAME)
-
-
-def make(results, options):
-    table = read(results.folder / NAME)
-    yield from statements(table)
-    yield Drawn("relaxation", draw(table, **options.look))
-
-
-COMMAND = Command(
-    name="relaxation", draws=True, summary="what relaxation does to photons", about=__doc__,
-    writes="figures/relaxation.png and .pdf", make=make, starts_from=NAME, read=Measured)
+COMMAND = one_table.command_of("relaxation", NAME, read, statements, draw, about=__doc__,
+                                summary="what relaxation does to photons")

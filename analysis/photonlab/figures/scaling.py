@@ -19,16 +19,15 @@ to that) to the largest: 1 is proportional, 0 is constant.
 
 import math
 import subprocess
-from dataclasses import dataclass
 from pathlib import Path
 
 from matplotlib import lines
 
 from photonlab.command import Command
-from photonlab.drawing import style
+from photonlab.drawing import one_table, style
 from photonlab.drawing.panels import panels_over_legend
 from photonlab.drawing.saving import Drawn
-from photonlab.records import columns, files, kept_files, tables
+from photonlab.records import columns, files, tables
 from photonlab.records.files import InputError
 
 SCENE = Path(__file__).resolve().parents[3] / "scenes/cornell-box/scene.xml"
@@ -259,16 +258,6 @@ def limits(panels, every, label):
         axes.set_ylabel(label)
 
 
-@dataclass
-class Measured:
-    """A folder with scaling.csv."""
-    folder: Path
-
-    @property
-    def hash(self):
-        return kept_files.hash_of_file(self.folder / NAME)
-
-
 def make(results, options):
     if options.run:
         make_records(options.run, results.folder, options.meshes)
@@ -288,4 +277,4 @@ def add_options(parser):
 COMMAND = Command(
     name="scaling", draws=True, summary="seconds and memory of a pass against its photons, hit points and triangles", about=__doc__,
     writes="scaling.csv (with --run), figures/scaling.png and .pdf, and cores.png and .pdf",
-    make=make, starts_from=NAME, read=Measured, add_options=add_options)
+    make=make, starts_from=NAME, read=one_table.measured_in(NAME), add_options=add_options)
