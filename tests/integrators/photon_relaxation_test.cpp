@@ -186,7 +186,7 @@ TEST(RelaxedPhotonMapping, RefusesSurfacesThatLookDifferentFromElsewhere) {
     const MethodSettings method{.integrator = "photonmapper", .mode = GatherMode::Relaxed};
     EXPECT_NO_THROW(require_renderable(method, build_scene(room(4, 4))));
     SceneDescription glossy = room(4, 4);
-    glossy.materials[0] = {.id = "brushed", .bsdf = Phong{10.0f, Color(0.2f), Color(0.3f)}};
+    glossy.materials[0] = {.id = "brushed", .bsdf = Phong{10.0f, {Color(0.2f), Color(0.3f)}}};
     try {
         require_renderable(method, build_scene(glossy));
         FAIL();

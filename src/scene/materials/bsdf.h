@@ -93,6 +93,16 @@ concept Scattering = requires(const Kind& bsdf, const Vector& direction, const I
     { bsdf.density(direction, direction) } -> std::same_as<float>;
 };
 
+/// What sample() answers of a surface that only reflects, once one of its lobes has drawn `incoming`: with the density
+/// of them all. Empty below the surface, and where that density rounds to 0.
+template <typename Kind>
+std::optional<BsdfSample> sample_of_all_lobes(const Kind& bsdf, const Vector& outgoing, const Vector& incoming) {
+    if (incoming.z <= 0.0f) return std::nullopt;
+    const float density = bsdf.density(outgoing, incoming);
+    if (!(density > 0.0f)) return std::nullopt;
+    return BsdfSample{incoming, bsdf.evaluate(outgoing, incoming) * (incoming.z / density), density};
+}
+
 /// A scattering lobe whose f is the same for all directions above the surface. Hit points on it need not know from
 /// where they are seen, which is all that leaving uniform_value() out costs.
 template <typename Kind>

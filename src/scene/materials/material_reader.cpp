@@ -171,10 +171,10 @@ Imath::V2f MaterialReader::range_of_alpha(const Microfacets& facets) const {
 }
 
 /// 0.6 scales both down by one factor where the largest values of the two add up to more than 1.
-MaterialReader::BaseAndLobe MaterialReader::read_base_and_lobe() {
-    BaseAndLobe colors{.base = color_or_texture("diffuse_reflectance", 0.5),
-                       .lobe = color_or_texture("specular_reflectance", 0.2),
-                       .scale = 1.0f};
+MaterialReader::ScaledBaseAndLobe MaterialReader::read_base_and_lobe() {
+    ScaledBaseAndLobe colors{.base = color_or_texture("diffuse_reflectance", 0.5),
+                             .lobe = color_or_texture("specular_reflectance", 0.2),
+                             .scale = 1.0f};
     const float largest = max_channel(colors.base.largest() + colors.lobe.largest());
     if (largest > 1.0f && std::isfinite(largest)) {
         const std::string type = element.attribute("type");

@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+#include "scene/materials/lobes/base_and_lobe.h"
 #include "scene/materials/material.h"
 #include "scene/materials/rough/microfacet.h"
 #include "scene/mitsuba/plugin.h"
@@ -41,20 +42,23 @@ struct MaterialReader : Plugin {
     /// A reflectance as the file has it, which may be above 1 together with others.
     ColorOrTexture color_or_texture(const std::string& name, double missing);
 
-    /// The diffuse_reflectance of a base and the specular_reflectance of a lobe above it.
+    /// The diffuse_reflectance of a base and the specular_reflectance of a lobe above it, each a colour or a texture,
+    /// which then gives that of `member`.
     template <typename Kind>
-    void read_base_and_lobe(Kind& bsdf) {
-        const BaseAndLobe colors = read_base_and_lobe();
-        const auto put = [&](Color Kind::*member, const ColorOrTexture& given) {
-            bsdf.*member = given.color * colors.scale;
-            if (!given.texture) return;
+    BaseAndLobe base_and_lobe(BaseAndLobe Kind::*member) {
+        const ScaledBaseAndLobe given = read_base_and_lobe();
+        BaseAndLobe colors;
+        const auto put = [&](Color BaseAndLobe::*color, const ColorOrTexture& read) {
+            colors.*color = read.color * given.scale;
+            if (!read.texture) return;
             material.textures.push_back(
-                {given.texture, [member, scale = colors.scale](Bsdf& there, const Color& color) {
-                     std::get<Kind>(there).*member = color * scale;
+                {read.texture, [member, color, scale = given.scale](Bsdf& bsdf, const Color& found) {
+                     std::get<Kind>(bsdf).*member.*color = found * scale;
                  }});
         };
-        put(&Kind::diffuse_reflectance, colors.base);
-        put(&Kind::specular_reflectance, colors.lobe);
+        put(&BaseAndLobe::diffuse_reflectance, given.base);
+        put(&BaseAndLobe::specular_reflectance, given.lobe);
+        return colors;
     }
 
     /// Throws InputError where the file forbids to scale what reflects more than it gets.
@@ -139,12 +143,12 @@ private:
     std::shared_ptr<const Texture> find_texture(const std::string& name, TextureUse use);
     Microfacets read_facets();
 
-    struct BaseAndLobe {
+    struct ScaledBaseAndLobe {
         ColorOrTexture base;
         ColorOrTexture lobe;
-        float scale;  ///< of both
+        float scale;  // of both
     };
-    BaseAndLobe read_base_and_lobe();
+    ScaledBaseAndLobe read_base_and_lobe();
 
     /// What a colour is as one number: 0.6 has its mean, 3 its brightness.
     static float as_number(const Color& color, bool is_mean) {

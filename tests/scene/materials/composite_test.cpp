@@ -145,7 +145,7 @@ TEST(Composites, HaveNoDensityBeyondTotalReflectionByTheirCoat) {
 }
 
 TEST(Composites, HaveADensityWhereAPartIsABlackPhong) {
-    const Phong black{.diffuse_reflectance = Color(0.0f), .specular_reflectance = Color(0.0f)};
+    const Phong black{.colors = {.diffuse_reflectance = Color(0.0f), .specular_reflectance = Color(0.0f)}};
     const Material blend = blended(grey, {.id = "black", .bsdf = black}, 0.5f);
     EXPECT_TRUE(std::isfinite(density(blend.bsdf, at_angle(60.0), at_angle(10.0))));
 }

@@ -47,14 +47,14 @@ TEST_F(LayeredFiles, HaveMitsubasDefaults) {
         EXPECT_NEAR(bsdf<ThinDielectric>(version, "<bsdf type='thindielectric'/>").index_inside, 1.5046f, 1e-6f);
         EXPECT_EQ(bsdf<Mask>(version, "<bsdf type='mask'><bsdf type='diffuse'/></bsdf>").opacity, Color(0.5f));
     }
-    EXPECT_EQ(bsdf<Phong>("0.6.0", "<bsdf type='phong'/>").specular_reflectance, Color(0.2f));
+    EXPECT_EQ(bsdf<Phong>("0.6.0", "<bsdf type='phong'/>").colors.specular_reflectance, Color(0.2f));
 }
 
 TEST_F(LayeredFiles, HaveWardOf06) {
     const auto ward = bsdf<Ward>("0.6.0", "<bsdf type='ward'/>");
     EXPECT_EQ(ward.facets.alpha_u, 0.1f);
     EXPECT_EQ(ward.form, WardForm::Balanced);
-    EXPECT_EQ(ward.specular_reflectance, Color(0.2f));
+    EXPECT_EQ(ward.colors.specular_reflectance, Color(0.2f));
     const Material brushed = material("0.6.0",
                                       "<bsdf type='ward'><string name='variant' value='ward-duer'/><float name='alpha' "
                                       "value='0.3'/><float name='alphaV' value='0.05'/></bsdf>");
@@ -144,16 +144,16 @@ TEST_F(LayeredFiles, OfPhongAreScaledByTheSumOfTheirLargestValues) {
     const Phong plain = bsdf<Phong>("0.6.0",
                                     "<bsdf type='phong'><rgb name='diffuseReflectance' value='1.2'/><rgb "
                                     "name='specularReflectance' value='0.2'/></bsdf>");
-    EXPECT_NEAR(plain.diffuse_reflectance.x, 1.2 * 0.99 / 1.4, 1e-6);
-    EXPECT_NEAR(plain.specular_reflectance.x, 0.2 * 0.99 / 1.4, 1e-6);
+    EXPECT_NEAR(plain.colors.diffuse_reflectance.x, 1.2 * 0.99 / 1.4, 1e-6);
+    EXPECT_NEAR(plain.colors.specular_reflectance.x, 0.2 * 0.99 / 1.4, 1e-6);
     const Material textured = material("0.6.0",
                                        "<bsdf type='phong'><texture name='diffuseReflectance' type='bitmap'><string "
                                        "name='filename' value='two.png'/></texture><rgb name='specularReflectance' "
                                        "value='0.2'/></bsdf>");
     const auto at = [&](float u) { return std::get<Phong>(bsdf_at(textured, {u, 0.5f}, false)); };
-    EXPECT_NEAR(at(0.75f).diffuse_reflectance.x, 0.99 / 1.2, 1e-6);
-    EXPECT_NEAR(at(0.25f).diffuse_reflectance.x, 0.0, 1e-6);
-    EXPECT_NEAR(at(0.25f).specular_reflectance.x, 0.2 * 0.99 / 1.2, 1e-6);
+    EXPECT_NEAR(at(0.75f).colors.diffuse_reflectance.x, 0.99 / 1.2, 1e-6);
+    EXPECT_NEAR(at(0.25f).colors.diffuse_reflectance.x, 0.0, 1e-6);
+    EXPECT_NEAR(at(0.25f).colors.specular_reflectance.x, 0.2 * 0.99 / 1.2, 1e-6);
 }
 
 // Both clamp the weight of a blend; 0.6 takes the mean of a texture's channels, 3 their brightness.

@@ -375,8 +375,7 @@ TEST(Wards, AreThoseOfTheirPapers) {
         const auto lobe = [&](WardForm form) {
             const Ward ward{.facets = {FacetSlopes::Beckmann, u, v},
                             .form = form,
-                            .diffuse_reflectance = Color(0.0f),
-                            .specular_reflectance = Color(1.0f)};
+                            .colors = {.diffuse_reflectance = Color(0.0f), .specular_reflectance = Color(1.0f)}};
             return evaluate(Bsdf(ward), a, b).x;
         };
         const double cosines = static_cast<double>(a.z) * b.z;
@@ -545,7 +544,8 @@ TEST(ThinGlass, IsTheSumOverAllReflectionsInside) {
 
 TEST(Phong, ReflectsItsReflectancesAtNormalIncidence) {
     // The lobe's integral with the cosine: (n + 2) / (2 pi) 2 pi / (n + 2) = 1.
-    const Phong phong{.exponent = 30.0f, .diffuse_reflectance = Color(0.3f), .specular_reflectance = Color(0.5f)};
+    const Phong phong{.exponent = 30.0f,
+                      .colors = {.diffuse_reflectance = Color(0.3f), .specular_reflectance = Color(0.5f)}};
     EXPECT_NEAR(over_sphere(
                     [&](const Vector& v) {
                         return phong.evaluate({0, 0, 1}, v).x * v.z;

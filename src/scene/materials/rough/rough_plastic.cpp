@@ -151,10 +151,7 @@ std::optional<BsdfSample> RoughPlastic::sample(const Vector& outgoing, Carried, 
     const Imath::V2f rest(by_coat.rest, u.y);
     const Vector incoming = by_coat.is_chosen ? mirrored(outgoing, facets.sample(outgoing, rest)).normalized()
                                               : sample_cosine_hemisphere(rest);
-    if (incoming.z <= 0.0f) return std::nullopt;
-    const float found = density(outgoing, incoming);
-    if (!(found > 0.0f)) return std::nullopt;
-    return BsdfSample{incoming, evaluate(outgoing, incoming) * (incoming.z / found), found};
+    return sample_of_all_lobes(*this, outgoing, incoming);
 }
 
 float RoughPlastic::density(const Vector& outgoing, const Vector& incoming) const {

@@ -1,7 +1,7 @@
 // The lobe is sampled by its half vector, from all facets' normals: their density is D(h) h.n, that of facets that are
 // seen from above. [Walter 2005, "Notes on the Ward BRDF"]
 
-#include "scene/materials/rough/ward.h"
+#include "scene/materials/lobes/ward.h"
 
 #include "core/error.h"
 #include "core/sampling.h"
@@ -28,32 +28,23 @@ double lobe_of(const Ward& ward, const Vector& outgoing, const Vector& incoming)
 
 Color Ward::evaluate(const Vector& outgoing, const Vector& incoming) const {
     if (outgoing.z <= 0.0f || incoming.z <= 0.0f) return Color(0.0f);
-    return diffuse_reflectance * static_cast<float>(1.0 / pi) +
-           specular_reflectance * static_cast<float>(lobe_of(*this, outgoing, incoming));
-}
-
-float Ward::lobe_share() const {
-    return share_beside(max_channel(specular_reflectance), max_channel(diffuse_reflectance));
+    return colors.evaluate(lobe_of(*this, outgoing, incoming));
 }
 
 std::optional<BsdfSample> Ward::sample(const Vector& outgoing, Carried, const Imath::V2f& u) const {
     if (outgoing.z <= 0.0f) return std::nullopt;
-    const ShareChoice lobe = choose_by_share(u.x, lobe_share());
+    const ShareChoice lobe = choose_by_share(u.x, colors.lobe_share());
     const Imath::V2f rest(lobe.rest, u.y);
     const Vector incoming = lobe.is_chosen ? mirrored(outgoing, facets.sample(straight_up, rest)).normalized()
                                            : sample_cosine_hemisphere(rest);
-    if (incoming.z <= 0.0f) return std::nullopt;
-    const float found = density(outgoing, incoming);
-    if (!(found > 0.0f)) return std::nullopt;
-    return BsdfSample{incoming, evaluate(outgoing, incoming) * (incoming.z / found), found};
+    return sample_of_all_lobes(*this, outgoing, incoming);
 }
 
 float Ward::density(const Vector& outgoing, const Vector& incoming) const {
     if (outgoing.z <= 0.0f || incoming.z <= 0.0f) return 0.0f;
-    const float share = lobe_share();
     const Vector half = (outgoing + incoming).normalized();
     const double lobe = facets.density(straight_up, half) / (4.0 * half.dot(outgoing));
-    return share * static_cast<float>(lobe) + (1.0f - share) * cosine_hemisphere_density(incoming.z);
+    return colors.density(lobe, incoming);
 }
 
 namespace {
@@ -72,7 +63,7 @@ WardForm read_form(MaterialReader& reader) {
 Ward Ward::read(MaterialReader& reader) {
     Ward ward;
     ward.form = read_form(reader);
-    reader.read_base_and_lobe(ward);
+    ward.colors = reader.base_and_lobe(&Ward::colors);
     const float alpha = static_cast<float>(reader.properties.number("alpha").value_or(0.1));
     ward.facets.alpha_u = std::max(
         reader.mean_or_texture<Ward>(
@@ -88,8 +79,7 @@ Ward Ward::read(MaterialReader& reader) {
 }
 
 void Ward::check(const MaterialCheck& check) const {
-    check.in_unit_range("diffuse_reflectance", diffuse_reflectance);
-    check.in_unit_range("specular_reflectance", specular_reflectance);
+    colors.check(check);
     check.facets(facets);
 }
 

@@ -2,7 +2,7 @@
 
 #pragma once
 
-#include "scene/materials/bsdf.h"
+#include "scene/materials/lobes/base_and_lobe.h"
 
 namespace photonlab {
 
@@ -12,22 +12,16 @@ struct Phong {
     static constexpr const char* name = "phong";
     static constexpr bool is_transmissive = false;
 
-    float exponent = 30.0f;                    ///< n, at least 0
-    Color diffuse_reflectance = Color(0.5f);   ///< in [0, 1] a channel
-    Color specular_reflectance = Color(0.2f);  ///< their sum at most 1 a channel
+    float exponent = 30.0f;  ///< n, at least 0
+    BaseAndLobe colors = {};
 
     Color evaluate(const Vector& outgoing, const Vector& incoming) const;
     std::optional<BsdfSample> sample(const Vector& outgoing, Carried, const Imath::V2f& u) const;
     float density(const Vector& outgoing, const Vector& incoming) const;
-    bool is_black() const {
-        return photonlab::is_black(diffuse_reflectance) && photonlab::is_black(specular_reflectance);
-    }
+    bool is_black() const { return colors.is_black(); }
 
     static Phong read(MaterialReader& reader);
     void check(const MaterialCheck& check) const;
-
-private:
-    float lobe_share() const;  // of sampling, that goes to the lobe
 };
 
 }  // namespace photonlab
