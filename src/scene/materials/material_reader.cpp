@@ -214,18 +214,11 @@ Material read_bsdf(MaterialReader& reader) {
     return std::move(reader.material);
 }
 
-template <MaterialWrapperKind Kind>
-Material read_wrapper(MaterialReader& reader) {
-    Material material = Kind::read(reader);
-    reader.require_all_known();
-    return material;
-}
-
 using MaterialKinds = std::vector<NamedKind<MaterialReader, Material>>;
 
 template <typename... Bsdfs, typename... Wrappers>
 MaterialKinds material_kinds(const std::variant<Bsdfs...>*, const std::variant<Wrappers...>*) {
-    return {{Bsdfs::name, read_bsdf<Bsdfs>}..., {Wrappers::name, read_wrapper<Wrappers>}...};
+    return {{Bsdfs::name, read_bsdf<Bsdfs>}..., {Wrappers::name, read_whole<Wrappers, MaterialReader, Material>}...};
 }
 
 }  // namespace

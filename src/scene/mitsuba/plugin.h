@@ -66,6 +66,14 @@ struct NamedKind {
     Result (*read)(Reader&);
 };
 
+/// A kind, which leaves nothing unread.
+template <typename Kind, typename Reader, typename Result>
+Result read_whole(Reader& reader) {
+    Result result = Kind::read(reader);
+    reader.require_all_known();
+    return result;
+}
+
 /// Throws the InputError for a plugin whose type is none of `known`.
 [[noreturn]] void fail_unknown(const XmlElement& element, std::vector<std::string_view> known);
 

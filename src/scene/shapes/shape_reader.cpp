@@ -29,18 +29,12 @@ MeshDescription place_flat(MeshDescription mesh, const ShapeReader& reader) {
 
 namespace {
 
-template <typename Kind>
-Geometry read_kind(ShapeReader& reader) {
-    Geometry geometry = Kind::read(reader);
-    reader.require_all_known();
-    return geometry;
-}
-
 using ShapeKinds = std::vector<NamedKind<ShapeReader, Geometry>>;
 
 template <typename... Analytics, typename... Meshes>
 ShapeKinds shape_kinds(const std::variant<Analytics...>*, const std::variant<Meshes...>*) {
-    return {{Analytics::name, read_kind<Analytics>}..., {Meshes::name, read_kind<Meshes>}...};
+    return {{Analytics::name, read_whole<Analytics, ShapeReader, Geometry>}...,
+            {Meshes::name, read_whole<Meshes, ShapeReader, Geometry>}...};
 }
 
 }  // namespace

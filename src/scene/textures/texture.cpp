@@ -12,16 +12,9 @@ namespace photonlab {
 
 namespace {
 
-template <typename Kind>
-Texture read_kind(Plugin& plugin) {
-    Kind texture = Kind::read(plugin);
-    plugin.require_all_known();
-    return texture;
-}
-
 template <typename... Kinds>
 std::vector<NamedKind<Plugin, Texture>> kinds_of(const std::variant<Kinds...>*) {
-    return {{Kinds::name, read_kind<Kinds>}...};
+    return {{Kinds::name, read_whole<Kinds, Plugin, Texture>}...};
 }
 
 void include(TextureRange& range, const Color& color) {
