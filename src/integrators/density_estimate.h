@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/math.h"
@@ -221,6 +222,14 @@ inline double initial_radius(const MethodSettings& settings, const Scene& scene,
 /// The same of one of the grid's.
 inline double initial_radius(const MethodSettings& settings, const IntegratorContext& context, std::size_t index) {
     return initial_radius(settings, context.scene, context.hit_points, index);
+}
+
+/// The names of the settings that all use which gather, after those that only one has.
+inline std::vector<std::string_view> gather_settings(std::vector<std::string_view> own) {
+    for (const std::string_view name : {"kernel", "area", "area_lines", "eps", "direct", "direct_samples", "max_depth",
+                                        "branch_cutoff", "photons_per_pass"})
+        own.push_back(name);
+    return own;
 }
 
 }  // namespace photonlab

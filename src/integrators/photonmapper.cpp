@@ -171,47 +171,30 @@ private:
 }  // namespace
 
 IntegratorKind photonmapper_kind() {
-    return {.name = "photonmapper",
-            .label = "PM",
-            .paper = "Jensen 1996, directly visualised",
-            .needs =
-                [](const MethodSettings& settings) {
-                    if (is_relaxed(settings))
-                        return Needs{.photons = Needs::Photons::OfPass,
-                                     .holds_photons = true,
-                                     .ordered_since = "it moves the photons that earlier passes left"};
-                    return Needs{.photons = Needs::Photons::OfAllPasses,
-                                 .ordered_since = "it gathers the photons of all passes together"};
-                },
-            .settings = {"mode",
-                         "light_sequence",
-                         "k",
-                         "radius",
-                         "footprints",
-                         "max_radius",
-                         "caustic_k",
-                         "caustic_radius",
-                         "caustic_max_radius",
-                         "relaxation_steps",
-                         "features",
-                         "kernel",
-                         "area",
-                         "area_lines",
-                         "eps",
-                         "direct",
-                         "direct_samples",
-                         "max_depth",
-                         "branch_cutoff",
-                         "photons_per_pass"},
-            .make =
-                [](const MethodSettings& settings, const IntegratorContext& context) {
-                    return is_relaxed(settings) ? make_relaxed_photon_mapping(settings, context)
-                                                : make_integrator_of<PhotonMapping>(settings, context);
-                },
-            .check =
-                [](const MethodSettings& settings, const Scene& scene) {
-                    if (is_relaxed(settings)) require_relaxable(scene, settings.max_depth);
-                }};
+    return {
+        .name = "photonmapper",
+        .label = "PM",
+        .paper = "Jensen 1996, directly visualised",
+        .needs =
+            [](const MethodSettings& settings) {
+                if (is_relaxed(settings))
+                    return Needs{.photons = Needs::Photons::OfPass,
+                                 .holds_photons = true,
+                                 .ordered_since = "it moves the photons that earlier passes left"};
+                return Needs{.photons = Needs::Photons::OfAllPasses,
+                             .ordered_since = "it gathers the photons of all passes together"};
+            },
+        .settings = gather_settings({"mode", "light_sequence", "k", "radius", "footprints", "max_radius", "caustic_k",
+                                     "caustic_radius", "caustic_max_radius", "relaxation_steps", "features"}),
+        .make =
+            [](const MethodSettings& settings, const IntegratorContext& context) {
+                return is_relaxed(settings) ? make_relaxed_photon_mapping(settings, context)
+                                            : make_integrator_of<PhotonMapping>(settings, context);
+            },
+        .check =
+            [](const MethodSettings& settings, const Scene& scene) {
+                if (is_relaxed(settings)) require_relaxable(scene, settings.max_depth);
+            }};
 }
 
 }  // namespace photonlab

@@ -41,36 +41,12 @@ inline bool wants_curvature(const MethodSettings& settings, const RadiusRule& ru
 
 /// The names of what both use, after those that only one has.
 inline std::vector<std::string_view> progressive_settings(std::vector<std::string_view> own = {}) {
-    for (const std::string_view name : {"photon_paths",
-                                        "step_rule",
-                                        "emission",
-                                        "learn_passes",
-                                        "light_sequence",
-                                        "schedule",
-                                        "alpha",
-                                        "kappa",
-                                        "smallest_radius",
-                                        "largest_radius",
-                                        "laplacian_radius",
-                                        "test_variant",
-                                        "start",
-                                        "test_photons",
-                                        "test_shrink",
-                                        "test_growth",
-                                        "estimate_error",
-                                        "radius",
-                                        "footprints",
-                                        "kernel",
-                                        "area",
-                                        "area_lines",
-                                        "eps",
-                                        "direct",
-                                        "direct_samples",
-                                        "max_depth",
-                                        "branch_cutoff",
-                                        "photons_per_pass"})
+    for (const std::string_view name :
+         {"photon_paths", "step_rule", "emission", "learn_passes", "light_sequence", "schedule", "alpha", "kappa",
+          "smallest_radius", "largest_radius", "laplacian_radius", "test_variant", "start", "test_photons",
+          "test_shrink", "test_growth", "estimate_error", "radius", "footprints"})
         own.push_back(name);
-    return own;
+    return gather_settings(std::move(own));
 }
 
 inline RadiusRuleSettings radius_rule_settings(const MethodSettings& settings) {
