@@ -30,16 +30,22 @@ std::uintmax_t size_of(const Descriptor& descriptor) {
     return ::fstat(descriptor.number(), &status) == 0 ? static_cast<std::uintmax_t>(status.st_size) : 0;
 }
 
-/// The file, opened to be read; it is ordinary. Not open, with the reason in errno, when there is none. Nothing is
-/// waited for, not even by the files of /proc that look ordinary and end when the kernel has something to say.
-Descriptor open_ordinary_file(const std::filesystem::path& file) {
+/// Throws InputError where something is at the path that is no ordinary file, a folder or what is called `other`, and
+/// where it is not known what is there, which is why the file `cannot`.
+void require_ordinary(const std::filesystem::path& file, const std::string& other, const std::string& cannot) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(file, error);
     if (std::filesystem::is_directory(status)) throw InputError(file.string(), "expected a file, this is a folder");
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-        throw InputError(file.string(), "expected a file, this is a pipe or a device");
+        throw InputError(file.string(), "expected a file, this is " + other);
     if (status.type() == std::filesystem::file_type::none)
-        throw InputError(file.string(), "cannot be read: " + error.message());
+        throw InputError(file.string(), cannot + ": " + error.message());
+}
+
+/// The file, opened to be read; it is ordinary. Not open, with the reason in errno, when there is none. Nothing is
+/// waited for, not even by the files of /proc that look ordinary and end when the kernel has something to say.
+Descriptor open_ordinary_file(const std::filesystem::path& file) {
+    require_ordinary(file, "a pipe or a device", "cannot be read");
     Descriptor descriptor(file, O_RDONLY | O_NOCTTY, Links::Followed);
     if (!descriptor.is_open()) {
         if (errno == ENOENT || errno == ENOTDIR) return descriptor;
@@ -205,13 +211,7 @@ void AppendedFile::exchange(StateArchive& archive) {
 }
 
 void require_writable(const std::filesystem::path& file) {
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(file, error);
-    if (std::filesystem::is_directory(status)) throw InputError(file.string(), "expected a file, this is a folder");
-    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-        throw InputError(file.string(), "expected a file, this is a device or a pipe, which cannot be replaced");
-    if (status.type() == std::filesystem::file_type::none)
-        throw InputError(file.string(), "cannot be written: " + error.message());
+    require_ordinary(file, "a device or a pipe, which cannot be replaced", "cannot be written");
     make_folder(file.parent_path());
     const TemporaryFile temporary(file);
 }
