@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/files/temporary_file.h"
-#include "image/plain_png.h"
+#include "image/codecs/plain_png.h"
 
 namespace photonlab {
 

@@ -5,7 +5,7 @@
 
 #include "core/files/files.h"
 #include "core/machine/available_memory.h"
-#include "image/plain_png.h"
+#include "image/codecs/plain_png.h"
 
 namespace photonlab {
 

@@ -1,6 +1,6 @@
 // Plain PNGs by libpng have the values that OpenImageIO gives, and everything else is left to it.
 
-#include "image/plain_png.h"
+#include "image/codecs/plain_png.h"
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "image/image_codecs.h"
+#include "image/codecs/image_codecs.h"
 
 namespace photonlab {
 

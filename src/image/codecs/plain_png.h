@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "image/image_codecs.h"
+#include "image/codecs/image_codecs.h"
 
 namespace photonlab {
 

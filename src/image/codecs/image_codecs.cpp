@@ -1,4 +1,4 @@
-#include "image/image_codecs.h"
+#include "image/codecs/image_codecs.h"
 
 #include <dlfcn.h>
 #include <fmt/format.h>

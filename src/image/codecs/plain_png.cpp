@@ -1,7 +1,7 @@
 // libpng goes on after an error by a jump back, over which no object that has a destructor may stand: what it reads
 // into is made before.
 
-#include "image/plain_png.h"
+#include "image/codecs/plain_png.h"
 
 #include <fmt/format.h>
 #include <png.h>
