@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "app/command_line.h"
-#include "app/commands.h"
+#include "app/commands/commands.h"
 #include "app/interruption.h"
 #include "app/limits.h"
 #include "core/error.h"

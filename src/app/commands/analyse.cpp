@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "app/commands.h"
+#include "app/commands/commands.h"
 #include "app/installed.h"
 #include "core/error.h"
 #include "core/files/files.h"

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "app/commands.h"
+#include "app/commands/commands.h"
 #include "app/options.h"
 #include "app/written_files.h"
 #include "core/error.h"

@@ -8,7 +8,7 @@
 #include <memory>
 #include <type_traits>
 
-#include "app/commands.h"
+#include "app/commands/commands.h"
 #include "app/limits.h"
 #include "app/options.h"
 #include "core/machine/processors.h"

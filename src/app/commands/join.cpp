@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "app/commands.h"
+#include "app/commands/commands.h"
 #include "app/limits.h"
 #include "app/options.h"
 #include "app/summary.h"

@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "app/commands.h"
+#include "app/commands/commands.h"
 #include "app/interruption.h"
 #include "app/options.h"
 #include "core/text/messages.h"

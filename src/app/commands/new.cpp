@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "app/commands.h"
+#include "app/commands/commands.h"
 #include "app/installed.h"
 #include "core/error.h"
 #include "core/files/files.h"

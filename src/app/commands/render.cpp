@@ -7,7 +7,7 @@
 #include <memory>
 #include <optional>
 
-#include "app/commands.h"
+#include "app/commands/commands.h"
 #include "app/interruption.h"
 #include "app/limits.h"
 #include "app/options.h"

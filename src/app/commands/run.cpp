@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "app/commands.h"
+#include "app/commands/commands.h"
 #include "app/interruption.h"
 #include "app/limits.h"
 #include "app/options.h"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "app/commands.h"
+#include "app/commands/commands.h"
 #include "core/error.h"
 #include "core/text/messages.h"
 #include "experiment/verify_results.h"

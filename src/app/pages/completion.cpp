@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "app/commands.h"
+#include "app/commands/commands.h"
 #include "app/pages/pages.h"
 #include "integrators/registry.h"
 #include "integrators/settings/settings_table.h"

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "app/commands.h"
+#include "app/commands/commands.h"
 #include "app/pages/pages.h"
 #include "core/files/files.h"
 #include "record/columns.h"
