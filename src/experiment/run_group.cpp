@@ -109,6 +109,14 @@ void exchange(StateArchive& archive, OpenRun& run) {
     });
 }
 
+/// The state of a method and what its run holds beside it.
+StateExchange with_state_of(OpenRun& run, const StateExchange& method) {
+    return [&run, &method](StateArchive& archive) {
+        method(archive);
+        exchange(archive, run);
+    };
+}
+
 /// What a run has left elsewhere than in its rows goes, but for its checkpoint, which is set aside.
 void begin_anew(const RunFiles& files) {
     for (const std::filesystem::path& file : {files.description, files.probes, files.emission, files.snapshots})
@@ -202,6 +210,149 @@ void finish(const RunGroup& group, OpenRun& run, const RunState& last) {
     if (!files.keeps_state) discard(files.checkpoint);
 }
 
+/// The runs of a group side by side, from their checkpoints to what is written when they are finished.
+class RunningGroup {
+public:
+    RunningGroup(const RunGroup& group, const ContinuationOptions& options);
+
+    GroupOutcome run(const PassListener& on_pass);
+
+private:
+    void restore(std::size_t method, const StateExchange& state);
+    bool goes_on(std::uint64_t pass, const std::vector<StateExchange>& states);
+    void save_all(std::uint64_t pass, const std::vector<StateExchange>& states);
+    void take(std::size_t method, const RunState& state, const Image& image);
+    GroupOutcome outcome(const std::vector<RunState>& last);
+    void count_seconds();
+    void come_to(std::uint64_t pass);
+
+    using Clock = std::chrono::steady_clock;
+
+    const RunGroup& group_;
+    const ContinuationOptions& options_;
+    std::vector<OpenRun> open_;  // by the index of their methods
+    std::vector<RunSettings> settings_;
+    std::uint64_t ended_at_;     // the last pass, as planned or as found good enough
+    Clock::time_point counted_;  // up to here, time is in the records
+    CheckpointClock saves_;
+    bool is_interrupted_ = false;
+};
+
+RunningGroup::RunningGroup(const RunGroup& group, const ContinuationOptions& options)
+    : group_(group), options_(options), saves_(options.seconds_between_saves) {
+    for (const PreparedRun* prepared : group.runs) {
+        open_.push_back(open_run(group, *prepared));
+        settings_.push_back(prepared->settings);
+    }
+    ended_at_ = settings_.at(0).passes;
+    reset_peak_resident();
+    counted_ = Clock::now();
+}
+
+void RunningGroup::count_seconds() {
+    const auto now = Clock::now();
+    for (OpenRun& run : open_) run.record.seconds += std::chrono::duration<double>(now - counted_).count();
+    counted_ = now;
+}
+
+void RunningGroup::come_to(std::uint64_t pass) {
+    for (OpenRun& run : open_) {
+        Session& session = run.record.sessions.back();
+        session.until_pass = std::max(session.until_pass, pass);  // one that was ahead of the others stays so
+    }
+}
+
+void RunningGroup::restore(std::size_t method, const StateExchange& state) {
+    options_.require_held();
+    OpenRun& run = open_[method];
+    if (options_.fresh || !load(run.files().checkpoint, with_state_of(run, state))) begin_anew(run.files());
+    if (!run.files().snapshots.empty()) make_folder(run.files().snapshots);
+}
+
+void RunningGroup::save_all(std::uint64_t pass, const std::vector<StateExchange>& states) {
+    count_seconds();
+    come_to(pass);
+    options_.require_held();
+    for (std::size_t i = 0; i < open_.size(); ++i)
+        save(open_[i].files().checkpoint, with_state_of(open_[i], states[i]));
+    saves_.saved();
+}
+
+bool RunningGroup::goes_on(std::uint64_t pass, const std::vector<StateExchange>& states) {
+    const bool is_due = saves_.is_due_after_pass();
+    const bool is_last = pass == settings_[0].passes;
+    if (!is_last)
+        is_interrupted_ = options_.is_interrupted();
+    else if (group_.experiment.decomposition)
+        is_interrupted_ = !std::all_of(open_.begin(), open_.end(),
+                                       [&](const OpenRun& run) { return add_to_ensemble(group_, run, options_); });
+    const bool is_kept = is_last && open_[0].files().keeps_state;
+    if (is_interrupted_ || (is_due && !is_last) || is_kept) save_all(pass, states);
+    return !is_interrupted_;
+}
+
+/// The image of a pass that somebody asked for.
+void RunningGroup::take(std::size_t method, const RunState& state, const Image& image) {
+    options_.require_held();
+    OpenRun& run = open_[method];
+    run.last_shown = state;
+    const PassPlan& plan = run.prepared->run.point->plan;
+    const bool is_last = state.pass == ended_at_;
+    if ((state.pass < plan.passes && is_last) || contains(plan.recorded, state.pass)) {
+        run.recorder.record(state, image);
+        if (group_.experiment.decomposition) run.recorded_images.push_back({state.pass, image});
+    }
+    if (state.pass < plan.passes && is_last && !run.record.snapshots.empty()) {  // the planned last one
+        run.record.snapshots[run.snapshots.size()] = run.record.snapshots.back();
+        run.record.snapshots.resize(run.snapshots.size() + 1);
+    }
+    if (contains(plan.snapshots, is_last ? plan.passes : state.pass)) {
+        const std::filesystem::path file = run.files().snapshot(is_last ? plan.passes : state.pass);
+        write_exr(file, image, image_metadata(run.recorder.identity(), state, group_.scene));
+        run.snapshots.push_back(stamp_of(file));
+    }
+    if (is_last && !run.files().picture.empty())
+        write_png(run.files().picture, image.width, image.height, total(image));
+}
+
+/// Writes what is written at the end, but for runs that were interrupted.
+GroupOutcome RunningGroup::outcome(const std::vector<RunState>& last) {
+    GroupOutcome outcome{.passes = last[0].pass};
+    if (is_interrupted_) return outcome;
+    count_seconds();
+    come_to(outcome.passes);
+    for (std::size_t i = 0; i < open_.size(); ++i) {
+        options_.require_held();
+        finish(group_, open_[i], last[i]);
+        outcome.runs.push_back(
+            {open_[i].last_shown, open_[i].recorder.last_total_errors(), summary_of(group_, open_[i], last[i])});
+    }
+    outcome.is_finished = true;
+    return outcome;
+}
+
+GroupOutcome RunningGroup::run(const PassListener& on_pass) {
+    const std::vector<Probe>& probes = group_.experiment.scenes[group_.runs[0]->run.point->scene].probes;
+    Continuation continuation{
+        .restore = [&](std::size_t method, const StateExchange& state) { restore(method, state); },
+        .goes_on = [&](std::uint64_t pass, const std::vector<StateExchange>& states) { return goes_on(pass, states); },
+        .is_good_enough = {}};
+    if (options_.is_good_enough)
+        continuation.is_good_enough = [&](std::uint64_t pass, const Image& image) {
+            if (!options_.is_good_enough(image)) return false;
+            ended_at_ = pass;
+            return true;
+        };
+    return outcome(run_methods(
+        group_.scene, group_.hit_points, settings_,
+        [&](std::size_t method, const RunState& state, const Image& image) { take(method, state, image); }, on_pass,
+        [&](std::size_t method, std::uint64_t pass, const Integrator& integrator) {
+            OpenRun& run = open_[method];
+            run.probes += probe_rows(run.recorder.identity(), probes, group_.hit_points, pass, integrator);
+        },
+        continuation));
+}
+
 }  // namespace
 
 RunFiles files_in(const std::filesystem::path& folder, const std::string& identity) {
@@ -238,113 +389,7 @@ std::optional<FileLock> lock_ensemble(const PreparedRun& prepared, const std::fi
 }
 
 GroupOutcome run_group(const RunGroup& group, const ContinuationOptions& options, const PassListener& on_pass) {
-    const std::vector<Probe>& probes = group.experiment.scenes[group.runs.at(0)->run.point->scene].probes;
-    std::vector<OpenRun> open;
-    std::vector<RunSettings> settings;
-    for (const PreparedRun* prepared : group.runs) {
-        open.push_back(open_run(group, *prepared));
-        settings.push_back(prepared->settings);
-    }
-    reset_peak_resident();
-
-    using Clock = std::chrono::steady_clock;
-    auto counted = Clock::now();  // up to here, time is in the records
-    const auto count_seconds = [&] {
-        const auto now = Clock::now();
-        for (OpenRun& run : open) run.record.seconds += std::chrono::duration<double>(now - counted).count();
-        counted = now;
-    };
-    const auto has_come_to = [&](std::uint64_t pass) {
-        for (OpenRun& run : open) {
-            Session& session = run.record.sessions.back();
-            session.until_pass = std::max(session.until_pass, pass);  // one that was ahead of the others stays so
-        }
-    };
-    const auto state_of = [&](OpenRun& run, const StateExchange& method) {
-        return [&run, &method](StateArchive& archive) {
-            method(archive);
-            exchange(archive, run);
-        };
-    };
-    const auto restore = [&](std::size_t i, const StateExchange& method) {
-        options.require_held();
-        const RunFiles& files = open[i].files();
-        if (options.fresh || !load(files.checkpoint, state_of(open[i], method))) begin_anew(files);
-        if (!files.snapshots.empty()) make_folder(files.snapshots);
-    };
-    std::uint64_t ended_at = settings[0].passes;
-    std::function<bool(std::uint64_t, const Image&)> is_good_enough;
-    if (options.is_good_enough)
-        is_good_enough = [&](std::uint64_t pass, const Image& image) {
-            if (!options.is_good_enough(image)) return false;
-            ended_at = pass;
-            return true;
-        };
-    CheckpointClock clock(options.seconds_between_saves);
-    bool is_interrupted = false;
-    const auto goes_on = [&](std::uint64_t pass, const std::vector<StateExchange>& methods) {
-        const bool is_due = clock.is_due_after_pass();
-        const bool is_last = pass == settings[0].passes;
-        if (!is_last)
-            is_interrupted = options.is_interrupted();
-        else if (group.experiment.decomposition)
-            is_interrupted = !std::all_of(open.begin(), open.end(),
-                                          [&](const OpenRun& run) { return add_to_ensemble(group, run, options); });
-        const bool is_kept = is_last && open[0].files().keeps_state;
-        if (is_interrupted || (is_due && !is_last) || is_kept) {
-            count_seconds();
-            has_come_to(pass);
-            options.require_held();
-            for (std::size_t i = 0; i < open.size(); ++i)
-                save(open[i].files().checkpoint, state_of(open[i], methods[i]));
-            clock.saved();
-        }
-        return !is_interrupted;
-    };
-
-    const std::vector<RunState> last = run_methods(
-        group.scene, group.hit_points, settings,
-        [&](std::size_t method, const RunState& state, const Image& image) {
-            options.require_held();
-            OpenRun& run = open[method];
-            run.last_shown = state;
-            const PassPlan& plan = run.prepared->run.point->plan;
-            const bool is_last = state.pass == ended_at;
-            if ((state.pass < plan.passes && is_last) || contains(plan.recorded, state.pass)) {
-                run.recorder.record(state, image);
-                if (group.experiment.decomposition) run.recorded_images.push_back({state.pass, image});
-            }
-            if (state.pass < plan.passes && is_last && !run.record.snapshots.empty()) {  // the planned last one
-                run.record.snapshots[run.snapshots.size()] = run.record.snapshots.back();
-                run.record.snapshots.resize(run.snapshots.size() + 1);
-            }
-            if (contains(plan.snapshots, is_last ? plan.passes : state.pass)) {
-                const std::filesystem::path file = run.files().snapshot(is_last ? plan.passes : state.pass);
-                write_exr(file, image, image_metadata(run.recorder.identity(), state, group.scene));
-                run.snapshots.push_back(stamp_of(file));
-            }
-            if (is_last && !run.files().picture.empty())
-                write_png(run.files().picture, image.width, image.height, total(image));
-        },
-        on_pass,
-        [&](std::size_t method, std::uint64_t pass, const Integrator& integrator) {
-            open[method].probes +=
-                probe_rows(open[method].recorder.identity(), probes, group.hit_points, pass, integrator);
-        },
-        {restore, goes_on, is_good_enough});
-
-    GroupOutcome outcome{.passes = last[0].pass};
-    if (is_interrupted) return outcome;
-    count_seconds();
-    has_come_to(outcome.passes);
-    for (std::size_t i = 0; i < open.size(); ++i) {
-        options.require_held();
-        finish(group, open[i], last[i]);
-        outcome.runs.push_back(
-            {open[i].last_shown, open[i].recorder.last_total_errors(), summary_of(group, open[i], last[i])});
-    }
-    outcome.is_finished = true;
-    return outcome;
+    return RunningGroup(group, options).run(on_pass);
 }
 
 }  // namespace photonlab
