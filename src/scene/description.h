@@ -4,6 +4,7 @@
 
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +22,7 @@ struct ShapeDescription {
     std::optional<ColorD> radiance;  ///< of an area light: W/(m^2 sr), emitted to the side of the normal
     std::string place;               ///< "file:line" for messages
     double sampling_weight = 1.0;    ///< of its light, above 0: how often it is chosen for its power
+    std::shared_ptr<const Texture> radiance_texture = {};  ///< a factor on `radiance`, or none
 };
 
 inline constexpr int largest_image_side = 65536;  ///< pixels, of an image that is rendered

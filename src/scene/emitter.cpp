@@ -35,7 +35,9 @@ double direct_density(const Scene& scene, const Vector& receiver, const Vector& 
 ColorD emitted_radiance(const Scene& scene, const Hit& hit, const Vector& outgoing) {
     const std::uint32_t emitter = scene.shapes[hit.shape].emitter;
     if (emitter == no_emitter || !(hit.geometric_normal.dot(outgoing) > 0.0f)) return ColorD(0.0);
-    return std::get<AreaLight>(scene.emitters[emitter].kind).radiance;
+    const Light& light = scene.emitters[emitter].kind;
+    if (const auto* plain = std::get_if<AreaLight>(&light)) return plain->radiance;
+    return std::get<TexturedAreaLight>(light).radiance_at(hit.texture_coordinate);
 }
 
 ColorD escaped_radiance(const Scene& scene, const Vector& direction) {

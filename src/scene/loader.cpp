@@ -182,6 +182,7 @@ private:
                 if (shape.radiance) throw InputError(object->place, "expected one emitter in a shape, got a second");
                 const AreaLight::Description light = read_area_light(plugin, around);
                 shape.radiance = light.radiance;
+                shape.radiance_texture = light.texture;
                 shape.sampling_weight = light.sampling_weight;
                 lights_without_shape_.erase(&plugin);
             } else {
@@ -192,7 +193,7 @@ private:
         }
         shape.material = bsdf ? material_index(*bsdf) : default_material(shape.radiance.has_value());
         reader.has_bsdf = bsdf != nullptr;
-        reader.has_texture = needs_texture_coordinates(scene_.materials[shape.material]);
+        reader.has_texture = needs_texture_coordinates(scene_.materials[shape.material]) || shape.radiance_texture;
         shape.geometry = read_geometry(reader);
         if (scene_.materials[shape.material].is_anisotropic) require_directions(shape.geometry, reader);
         scene_.shapes.push_back(std::move(shape));

@@ -36,6 +36,7 @@ void require_valid(const SceneDescription& description) {
             throw InputError(shape.place,
                              fmt::format("material {} of {}", shape.material, description.materials.size()));
         if (shape.radiance) AreaLight::check(*shape.radiance, shape.place);
+        if (shape.radiance_texture) require_factor_on_light(*shape.radiance_texture, shape.place, "radiance");
         require_valid(shape.geometry, shape.place);
     }
     for (const LightDescription& light : description.lights) require_valid(light);
@@ -149,6 +150,16 @@ Camera make_camera(const CameraDescription& description, std::optional<Resolutio
 
 constexpr const char* power_overflows = "the emitted power overflows double precision; scale the lights down";
 
+/// The light of a shape that has one; `index` is that of the shape.
+Light area_light(const ShapeDescription& described, std::size_t index, const Shape& shape) {
+    const auto here = static_cast<std::uint32_t>(index);
+    if (!described.radiance_texture) return AreaLight{*described.radiance, here};
+    return TexturedAreaLight{.texture = described.radiance_texture,
+                             .factor = *described.radiance,
+                             .shape = here,
+                             .parts = std::make_shared<const BrightParts>(shape, *described.radiance_texture)};
+}
+
 /// Lists the lights that have power, and with which probability each is chosen. Ratios of power, not power, so that
 /// light times a constant changes no choice.
 void add_emitters(Scene& scene, const SceneDescription& description, const SceneExtent& extent) {
@@ -166,8 +177,7 @@ void add_emitters(Scene& scene, const SceneDescription& description, const Scene
     for (std::size_t i = 0; i < description.shapes.size(); ++i) {
         const ShapeDescription& shape = description.shapes[i];
         const auto next = static_cast<std::uint32_t>(scene.emitters.size());
-        if (shape.radiance &&
-            add(AreaLight{*shape.radiance, static_cast<std::uint32_t>(i)}, shape.place, shape.sampling_weight))
+        if (shape.radiance && add(area_light(shape, i, scene.shapes[i]), shape.place, shape.sampling_weight))
             scene.shapes[i].emitter = next;
     }
     for (const LightDescription& light : description.lights) {
@@ -395,10 +405,11 @@ Scene build_scene(SceneDescription description, std::optional<Resolution> resolu
     if (!bounds.is_empty()) scene.bounding_radius = to_unit_box.length(0.5 * (bounds.upper - bounds.lower).length());
     scene.shapes.reserve(description.shapes.size());
     for (ShapeDescription& shape : description.shapes) {
-        scene.shapes.push_back(place_shape(shape.geometry, to_unit_box,
-                                           {.emits = shape.radiance.has_value(),
-                                            .has_texture = needs_texture_coordinates(scene.materials[shape.material]) ||
-                                                           scene.materials[shape.material].is_anisotropic}));
+        scene.shapes.push_back(
+            place_shape(shape.geometry, to_unit_box,
+                        {.emits = shape.radiance.has_value(),
+                         .has_texture = needs_texture_coordinates(scene.materials[shape.material]) ||
+                                        scene.materials[shape.material].is_anisotropic || shape.radiance_texture}));
         scene.shapes.back().material = static_cast<std::uint32_t>(shape.material);
         shape.geometry = Geometry();
     }

@@ -77,6 +77,7 @@ TEST(Kinds, OfLightsHaveChecksAndSayWhetherRaysMeetThem) {
     EXPECT_TRUE(SceneLightKind<SoundLight>);
     EXPECT_FALSE(SceneLightKind<LightWithoutCheck>);
     EXPECT_TRUE(is_met_by_rays({AreaLight{}, ColorD(1.0), 1.0, 1.0}));
+    EXPECT_TRUE(is_met_by_rays({TexturedAreaLight{}, ColorD(1.0), 1.0, 1.0}));
     EXPECT_FALSE(is_met_by_rays({PointLight{}, ColorD(1.0), 1.0, 1.0}));
 }
 

@@ -89,8 +89,7 @@ void print_hidden_lights(const Scene& scene) {
     const double around = 4.0 * pi * scene.bounding_radius * scene.bounding_radius;
     for (const Emitter& emitter : scene.emitters) {
         if (!is_met_by_rays(emitter)) ++without_size;
-        if (const auto* light = std::get_if<AreaLight>(&emitter.kind))
-            small += scene.shapes[light->shape].area < hardly * around;
+        if (const auto shape = shape_of(emitter.kind)) small += scene.shapes[*shape].area < hardly * around;
     }
     if (without_size > 0)
         print_output(

@@ -1,10 +1,11 @@
-// A shape that shines: light leaves it uniform in area and by the cosine, so a photon's weight is the same wherever it
-// starts.
+// A shape that shines alike everywhere: light leaves it uniform in area and by the cosine, so a photon's weight is the
+// same wherever it starts. One whose radiance is a texture is in textured_area_light.h.
 
 #pragma once
 
 #include "core/sampling.h"
 #include "scene/emitters/light_kind.h"
+#include "scene/textures/texture.h"
 
 namespace photonlab {
 
@@ -23,7 +24,8 @@ struct AreaLight {
 
     /// What a shape's <emitter> says.
     struct Description {
-        ColorD radiance;
+        ColorD radiance;  ///< with a texture a factor on it
+        std::shared_ptr<const Texture> texture = {};
         double sampling_weight = 1.0;
     };
     static Description read(LightReader& reader);

@@ -1,6 +1,6 @@
-// Lights as the scene has them: a shape that shines, or one of the kinds that no shape bears, which
-// src/scene/CMakeLists.txt lists. To add one of those: a file with a struct that answers what SceneLightKind in
-// light_kind.h asks, its name in the list, and a test.
+// Lights as the scene has them: a shape that shines, alike everywhere or by a texture, or one of the kinds that no
+// shape bears, which src/scene/CMakeLists.txt lists. To add one of those: a file with a struct that answers what
+// SceneLightKind in light_kind.h asks, its name in the list, and a test.
 
 #pragma once
 
@@ -8,13 +8,14 @@
 
 #include "scene/emitters/area_light.h"
 #include "scene/emitters/scene_light_list.h"
+#include "scene/emitters/textured_area_light.h"
 
 namespace photonlab {
 
 template <typename... Kinds>
 std::variant<typename Kinds::Description...> described_light(const std::variant<Kinds...>&);
 template <typename... Kinds>
-std::variant<AreaLight, Kinds...> any_light(const std::variant<Kinds...>&);
+std::variant<AreaLight, TexturedAreaLight, Kinds...> any_light(const std::variant<Kinds...>&);
 
 /// A light that no shape bears, in scene units.
 using LightDescription = decltype(described_light(std::declval<SceneLight>()));
@@ -33,6 +34,18 @@ struct Emitter {
 /// The kind of light, as scene files call it.
 inline const char* emitter_kind(const Emitter& emitter) {
     return std::visit([]<typename Kind>(const Kind&) { return Kind::name; }, emitter.kind);
+}
+
+/// Index of the shape that bears it, where one does.
+inline std::optional<std::uint32_t> shape_of(const Light& light) {
+    return std::visit(
+        []<typename Kind>(const Kind& kind) -> std::optional<std::uint32_t> {
+            if constexpr (requires { kind.shape; })
+                return kind.shape;
+            else
+                return std::nullopt;
+        },
+        light);
 }
 
 /// False when no ray from the camera can find it, but by shadow rays.

@@ -30,6 +30,7 @@ struct SceneSource {
                                                                                       ///< alpha, and index
     int depth = 0;                        ///< of materials or textures inside each other
     std::size_t* nested_count = nullptr;  ///< of all materials inside the outermost one
+    bool emits = false;                   ///< textures in it are light, and not reflectances
 };
 
 struct Plugin {
@@ -43,6 +44,11 @@ struct Plugin {
 
     /// The file that its property "filename" names. Throws InputError where there is none.
     std::filesystem::path require_file();
+
+    /// A colour of what it is: of light where the source emits, else a reflectance.
+    std::optional<ColorD> color(const std::string& name) {
+        return source.emits ? properties.emission(name) : properties.reflectance(name);
+    }
 
     /// Refuses what nests in it. Throws InputError.
     void require_no_objects() const;

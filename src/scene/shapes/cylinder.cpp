@@ -129,6 +129,11 @@ void Cylinder::complete(Hit& hit, const Ray& ray, float, float) const {
         Imath::V2f(Imath::V2d(turn_to(outward.dot(axes[0]), outward.dot(axes[1])), along / length));
 }
 
+Imath::V2f Cylinder::texture_coordinate_at(const Vector& position) const {
+    const VectorD offset = VectorD(position) - VectorD(base);
+    return Imath::V2f(Imath::V2d(turn_to(offset.dot(axes[0]), offset.dot(axes[1])), offset.dot(axes[2]) / length));
+}
+
 SurfaceTangents Cylinder::tangents(const Hit& hit) const {
     const VectorD offset = VectorD(hit.position) - VectorD(base);
     return {(axes[1] * offset.dot(axes[0]) - axes[0] * offset.dot(axes[1])) * (2.0 * pi),

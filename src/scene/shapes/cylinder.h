@@ -39,6 +39,7 @@ struct Cylinder {
     Roots roots(const VectorD& origin, const VectorD& direction) const;
     void complete(Hit& hit, const Ray& ray, float, float) const;
     SurfaceTangents tangents(const Hit& hit) const;
+    Imath::V2f texture_coordinate_at(const Vector& position) const;
     std::vector<SurfacePoint> probes() const;
     SurfacePoint sample_area(const Imath::V2f& u, double) const { return point_at(u.x, u.y); }
 

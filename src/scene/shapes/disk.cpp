@@ -54,6 +54,10 @@ SurfaceTangents Disk::tangents(const Hit& hit) const {
     return {outward * static_cast<double>(radius), (axes[1] * x - axes[0] * y) * (2.0 * pi)};
 }
 
+Imath::V2f Disk::texture_coordinate_at(const Vector& position) const {
+    return texture_coordinate_of(VectorD(position) - VectorD(centre), texture_axes.value_or(scene_axes));
+}
+
 std::vector<SurfacePoint> Disk::probes() const {
     std::vector<SurfacePoint> points;
     // Not the centre, where balls rest.

@@ -29,7 +29,7 @@ struct Disk {
     Frame frame;  ///< its normal is the disk's
     Vector centre;
     float radius;
-    std::optional<TextureAxes> texture_axes;  ///< where its material has a texture
+    std::optional<TextureAxes> texture_axes;  ///< where its material or its light has a texture
 
     static DiskDescription read(ShapeReader& reader);
 
@@ -38,10 +38,14 @@ struct Disk {
     Roots roots(const VectorD& origin, const VectorD& direction) const;
     void complete(Hit& hit, const Ray& ray, float, float) const;
     SurfaceTangents tangents(const Hit& hit) const;
+    Imath::V2f texture_coordinate_at(const Vector& position) const;
     std::vector<SurfacePoint> probes() const;
     double distance_to(const Vector& position) const;
     std::optional<Vector> whole_within(const Vector& position, double distance) const;
     SurfacePoint sample_area(const Imath::V2f& u, double) const;
+
+private:
+    Imath::V2f texture_coordinate_of(const VectorD& from_centre, const TextureAxes& axes) const;
 };
 
 inline Roots Disk::roots(const VectorD& origin, const VectorD& direction) const {
@@ -60,10 +64,13 @@ inline void Disk::complete(Hit& hit, const Ray& ray, float, float) const {
     hit.position = Vector(position - normal * (position - middle).dot(normal));
     hit.geometric_normal = frame.normal;
     hit.shading_normal = frame.normal;
-    if (!texture_axes) return;
-    const double x = (position - middle).dot((*texture_axes)[0]) / radius;
-    const double y = (position - middle).dot((*texture_axes)[1]) / radius;
-    hit.texture_coordinate = Imath::V2f(Imath::V2d(std::hypot(x, y), turn_to(x, y)));
+    if (texture_axes) hit.texture_coordinate = texture_coordinate_of(position - middle, *texture_axes);
+}
+
+inline Imath::V2f Disk::texture_coordinate_of(const VectorD& from_centre, const TextureAxes& axes) const {
+    const double x = from_centre.dot(axes[0]) / radius;
+    const double y = from_centre.dot(axes[1]) / radius;
+    return Imath::V2f(Imath::V2d(std::hypot(x, y), turn_to(x, y)));
 }
 
 inline SurfacePoint Disk::sample_area(const Imath::V2f& u, double) const {

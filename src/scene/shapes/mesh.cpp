@@ -83,6 +83,18 @@ TriangleMesh MeshDescription::placed(const ToUnitBox& to_unit_box, const ShapeUs
     return mesh;
 }
 
+std::array<Imath::V2f, 3> TriangleMesh::texture_coordinates_of(std::size_t triangle) const {
+    if (texture_coordinates.empty()) return {Imath::V2f(0.0f, 0.0f), Imath::V2f(1.0f, 0.0f), Imath::V2f(0.0f, 1.0f)};
+    const auto& corners = triangles[triangle];
+    return {texture_coordinates[corners.x], texture_coordinates[corners.y], texture_coordinates[corners.z]};
+}
+
+Imath::V2f TriangleMesh::texture_coordinate_on(std::size_t triangle, const Imath::V2f& u) const {
+    const auto [a, b, c] = texture_coordinates_of(triangle);
+    const Imath::V2f weights = sample_triangle(u);
+    return a * (1.0f - weights.x - weights.y) + b * weights.x + c * weights.y;
+}
+
 /// Texture coordinates are linear over a triangle, so its edges give the two; where they do not tell u from v, any two
 /// in its plane.
 SurfaceTangents TriangleMesh::tangents(const Hit& hit) const {

@@ -36,7 +36,16 @@ struct TriangleMesh {
     double area() const { return surface_area; }
     void complete(Hit& hit, const Ray& ray, float u, float v) const;
     SurfaceTangents tangents(const Hit& hit) const;
-    SurfacePoint sample_area(const Imath::V2f& u, double u_triangle) const;
+    SurfacePoint sample_area(const Imath::V2f& u, double u_triangle) const {
+        return point_on(triangle_at(u_triangle), u);
+    }
+
+    std::size_t triangle_at(double u_triangle) const;  ///< by area, where it emits
+    /// A point of one triangle, uniform in area, and its texture coordinate.
+    SurfacePoint point_on(std::size_t triangle, const Imath::V2f& u) const;
+    Imath::V2f texture_coordinate_on(std::size_t triangle, const Imath::V2f& u) const;
+    /// Texture coordinates of a triangle's corners.
+    std::array<Imath::V2f, 3> texture_coordinates_of(std::size_t triangle) const;
 };
 
 /// Completes a hit on a triangle. The position comes from the vertices, which is more accurate than origin + t
@@ -67,9 +76,12 @@ inline void TriangleMesh::complete(Hit& hit, const Ray& ray, float u, float v) c
         hit.texture_coordinate = Imath::V2f(u, v);
 }
 
-inline SurfacePoint TriangleMesh::sample_area(const Imath::V2f& u, double u_triangle) const {
+inline std::size_t TriangleMesh::triangle_at(double u_triangle) const {
     const auto found = std::upper_bound(triangle_cdf.begin(), triangle_cdf.end() - 1, u_triangle);
-    const auto index = static_cast<std::size_t>(found - triangle_cdf.begin());
+    return static_cast<std::size_t>(found - triangle_cdf.begin());
+}
+
+inline SurfacePoint TriangleMesh::point_on(std::size_t index, const Imath::V2f& u) const {
     const auto& triangle = triangles[index];
     const Vector& a = positions[triangle.x];
     const Vector& b = positions[triangle.y];

@@ -98,6 +98,18 @@ std::optional<SeenPoint> sample_seen(const Shape& shape, const Vector& receiver,
                      .density = squared_distance / (cosine * shape.area)};
 }
 
+Imath::V2f texture_coordinate_of_drawn(const Shape& shape, const Vector& position, const Imath::V2f& u,
+                                       double u_triangle) {
+    return std::visit(
+        [&]<typename Kind>(const Kind& kind) {
+            if constexpr (std::is_same_v<Kind, TriangleMesh>)
+                return kind.texture_coordinate_on(kind.triangle_at(u_triangle), u);
+            else
+                return kind.texture_coordinate_at(position);
+        },
+        shape.geometry);
+}
+
 double seen_density(const Shape& shape, const Vector& receiver, const Vector& direction, const Hit& hit) {
     const double cosine = -static_cast<double>(hit.geometric_normal.dot(direction));
     if (!(cosine > 0.0)) return 0.0;

@@ -61,6 +61,10 @@ inline SurfacePoint sample_area(const Shape& shape, const Imath::V2f& u, double 
 std::optional<SeenPoint> sample_seen(const Shape& shape, const Vector& receiver, const Imath::V2f& u,
                                      double u_triangle);
 
+/// Texture coordinate of the point at `position` that sample_area() or sample_seen() draws with the same numbers.
+Imath::V2f texture_coordinate_of_drawn(const Shape& shape, const Vector& position, const Imath::V2f& u,
+                                       double u_triangle);
+
 /// Density per steradian with which sample_seen() draws, from `receiver`, the point of the shape at `hit` that was
 /// found in `direction` (unit).
 double seen_density(const Shape& shape, const Vector& receiver, const Vector& direction, const Hit& hit);

@@ -14,7 +14,7 @@ struct ShapeReader : Plugin {
     Matrix to_world;
     bool flip_normals;
     bool has_bsdf = false;     ///< in its element
-    bool has_texture = false;  ///< in its material, which then needs texture coordinates
+    bool has_texture = false;  ///< in its material or its light, which then needs texture coordinates
 
     /// Whether triangles, taken to the world, must be turned inside out for what was outside to be outside.
     bool turns_triangles() const { return (handedness(to_world) < 0.0) != flip_normals; }

@@ -46,6 +46,11 @@ SurfaceTangents Sphere::tangents(const Hit& hit) const {
     return {(y * along_x - x * along_y) * (2.0 * pi), (outward * from_centre.dot(z) - z * from_axis) * pi};
 }
 
+Imath::V2f Sphere::texture_coordinate_at(const Vector& position) const {
+    return texture_coordinate_along((VectorD(position) - VectorD(centre)).normalized(),
+                                    texture_axes.value_or(scene_axes));
+}
+
 std::vector<SurfacePoint> Sphere::probes() const {
     std::vector<SurfacePoint> points;
     // Not along the axes, where spheres rest on floors: a single point of contact does no harm.

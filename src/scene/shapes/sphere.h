@@ -29,7 +29,7 @@ struct Sphere {
     Vector centre;
     float radius;
     float orientation;                        ///< +1: the normal points outwards; -1: to the centre
-    std::optional<TextureAxes> texture_axes;  ///< where its material has a texture
+    std::optional<TextureAxes> texture_axes;  ///< where its material or its light has a texture
 
     static SphereDescription read(ShapeReader& reader);
 
@@ -38,6 +38,7 @@ struct Sphere {
     Roots roots(const VectorD& origin, const VectorD& direction) const;
     void complete(Hit& hit, const Ray& ray, float, float) const;
     SurfaceTangents tangents(const Hit& hit) const;
+    Imath::V2f texture_coordinate_at(const Vector& position) const;
     std::vector<SurfacePoint> probes() const;
     double distance_to(const Vector& position) const;
     std::optional<Vector> whole_within(const Vector& position, double distance) const;
@@ -47,6 +48,9 @@ struct Sphere {
     /// faces inwards. [Shirley, Wang & Zimmerman 1996, "Monte Carlo Techniques for Direct Lighting Calculations"]
     std::optional<SeenPoint> sample_seen(const Vector& receiver, const Imath::V2f& u) const;
     std::optional<double> seen_density(const Vector& receiver) const;
+
+private:
+    static Imath::V2f texture_coordinate_along(const VectorD& outward, const TextureAxes& texture_axes);
 };
 
 /// The quadratic in the form that does not cancel: the root of larger magnitude by addition, the other by division.
@@ -72,10 +76,13 @@ inline void Sphere::complete(Hit& hit, const Ray& ray, float, float) const {
     hit.position = Vector(middle + outward * radius);
     hit.geometric_normal = Vector(outward) * orientation;
     hit.shading_normal = hit.geometric_normal;
-    if (!texture_axes) return;
-    const auto& [x, y, z] = *texture_axes;
+    if (texture_axes) hit.texture_coordinate = texture_coordinate_along(outward, *texture_axes);
+}
+
+inline Imath::V2f Sphere::texture_coordinate_along(const VectorD& outward, const TextureAxes& texture_axes) {
+    const auto& [x, y, z] = texture_axes;
     const double from_pole = std::acos(std::clamp(outward.dot(z), -1.0, 1.0)) / pi;
-    hit.texture_coordinate = Imath::V2f(Imath::V2d(turn_to(outward.dot(x), outward.dot(y)), from_pole));
+    return Imath::V2f(Imath::V2d(turn_to(outward.dot(x), outward.dot(y)), from_pole));
 }
 
 inline SurfacePoint Sphere::sample_area(const Imath::V2f& u, double) const {

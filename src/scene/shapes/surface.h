@@ -84,7 +84,7 @@ inline const TextureAxes scene_axes{VectorD(1, 0, 0), VectorD(0, 1, 0), VectorD(
 /// How a shape is used, which decides what is kept of it.
 struct ShapeUse {
     bool emits = false;
-    bool has_texture = false;  ///< in its material
+    bool has_texture = false;  ///< in its material, or in its light
 };
 
 /// Distances, in units of the direction's length, at which a line meets a surface; nearest first.
@@ -102,8 +102,8 @@ struct SurfaceTangents {
 /// A kind of shape that is met as it is, and not as triangles. read() gives the description of a <shape>, in the world;
 /// check(place) throws InputError for what cannot be rendered, and placed() takes it to the unit box. complete() fills
 /// a hit of the ray from its distance, and tangents() are there; probes() are points all over it, away from where
-/// others may rest on it. What every ray and every photon asks, roots(), complete() and sample_area(), is inline: calls
-/// cost more than they do.
+/// others may rest on it. texture_coordinate_at() is that of a point on it, or off it along its normal. What every ray
+/// and every photon asks, roots(), complete() and sample_area(), is inline: calls cost more than they do.
 ///
 /// A kind that knows where it is whole has distance_to(position), and whole_within(position, distance): the normal at a
 /// point on it around which its area within any distance up to that one is a flat disc's, all of it seen from there,
@@ -126,6 +126,7 @@ concept AnalyticKind = requires(const Kind& shape, const typename Kind::Descript
     { shape.extent() } -> std::same_as<Extent>;
     { shape.complete(hit, ray, 0.0f, 0.0f) } -> std::same_as<void>;
     { shape.tangents(hit) } -> std::same_as<SurfaceTangents>;
+    { shape.texture_coordinate_at(ray.origin) } -> std::same_as<Imath::V2f>;
     { shape.probes() } -> std::same_as<std::vector<SurfacePoint>>;
 };
 

@@ -19,8 +19,8 @@ Color Checkerboard::color_at(const Imath::V2f& texture_coordinate) const {
 
 Checkerboard Checkerboard::read(Plugin& plugin) {
     plugin.require_no_objects();
-    return {.first = Color(plugin.properties.reflectance("color0").value_or(ColorD(0.4))),
-            .second = Color(plugin.properties.reflectance("color1").value_or(ColorD(0.2))),
+    return {.first = Color(plugin.color("color0").value_or(ColorD(0.4))),
+            .second = Color(plugin.color("color1").value_or(ColorD(0.2))),
             .to_uv = read_uv_transform(plugin),
             .is_mirrored = plugin.is_version_06()};
 }

@@ -26,7 +26,7 @@ Color Scale::largest() const {
 
 Scale Scale::read(Plugin& plugin) {
     Scale scale{.nested = nullptr, .factor = Color(plugin.properties.reflectance("scale").value_or(ColorD(1.0)))};
-    if (const auto value = plugin.properties.reflectance("value")) scale.factor *= Color(*value);
+    if (const auto value = plugin.color("value")) scale.factor *= Color(*value);
     const auto& objects = plugin.properties.objects();
     if (objects.size() + (plugin.properties.has("value") ? 1 : 0) != 1)
         throw InputError(plugin.element.place, "scale: expected one texture, or one colour called value");

@@ -54,16 +54,40 @@ TextureRange range_of_kind(const Scale& scale) {
     return range;
 }
 
+Matrix scaled(const Matrix& to_uv, double x, double y) {
+    Matrix scale;
+    scale.setScale(VectorD(x, y, 1.0));
+    return to_uv * scale;
+}
+
+Matrix to_cells_of_kind(const Bitmap& bitmap) {
+    Matrix to_cells = scaled(bitmap.to_uv, bitmap.image->width, bitmap.image->height);
+    for (const int axis : {0, 1}) to_cells[3][axis] -= bitmap.is_nearest ? 0.0 : 0.5;
+    return to_cells;
+}
+
+Matrix to_cells_of_kind(const Checkerboard& board) {
+    return scaled(board.to_uv, 2.0, 2.0);
+}
+
+Matrix to_cells_of_kind(const Scale& scale) {
+    return scale.nested ? to_cells(scale.nested->texture) : scaled(Matrix(), 0.0, 0.0);
+}
+
 }  // namespace
+
+Matrix to_cells(const Texture& texture) {
+    return std::visit([](const auto& kind) { return to_cells_of_kind(kind); }, texture);
+}
 
 TextureRange range_of(const Texture& texture) {
     return std::visit([](const auto& kind) { return range_of_kind(kind); }, texture);
 }
 
-void require_factor_on_light(const Texture& texture, const std::string& place) {
+void require_factor_on_light(const Texture& texture, const std::string& place, std::string_view what) {
     const TextureRange range = range_of(texture);
     if (!(range.least >= 0.0f))
-        throw InputError(place, fmt::format("texture: expected finite values of at least 0, got {}", range.least));
+        throw InputError(place, fmt::format("{}: expected finite values of at least 0, got {}", what, range.least));
 }
 
 void require_reflectance(const Texture& texture, const std::string& place) {
@@ -77,7 +101,9 @@ Texture read_texture(const XmlElement& element, const SceneSource& source, Textu
     Texture texture = kind.read(plugin);
     if (auto* board = std::get_if<Checkerboard>(&texture); board && use == TextureUse::Share && !plugin.is_version_06())
         std::swap(board->first, board->second);  // so does Mitsuba 3 where a checkerboard is one number
-    if (use == TextureUse::Reflectance) require_reflectance(texture, plugin.properties.place_of("filename"));
+    const std::string& place = plugin.properties.place_of("filename");
+    if (use == TextureUse::Reflectance) require_reflectance(texture, place);
+    if (use == TextureUse::Light) require_factor_on_light(texture, place, element.attribute("name"));
     return texture;
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 #include <variant>
 
 #include "scene/textures/texture_list.h"
@@ -46,8 +47,12 @@ struct TextureRange {
 };
 TextureRange range_of(const Texture& texture);
 
-/// Throws InputError for what is no factor on light: finite, and at least 0.
-void require_factor_on_light(const Texture& texture, const std::string& place);
+/// To coordinates in which the texture is bilinear in each square from whole numbers to the next: (u, v, 0) to
+/// (x, y, 0), affine.
+Matrix to_cells(const Texture& texture);
+
+/// Throws InputError for what is no factor on light: finite, and at least 0. `what` the message calls it.
+void require_factor_on_light(const Texture& texture, const std::string& place, std::string_view what = "texture");
 
 /// Throws InputError for what is no reflectance.
 void require_reflectance(const Texture& texture, const std::string& place);

@@ -12,9 +12,9 @@ namespace photonlab {
 
 struct Plugin;
 
-/// What a texture is for, which decides what it may hold. A reflectance is at every point a colour in [0, 1]; a share
-/// or a roughness is one number, which its user brings into its range.
-enum class TextureUse { Reflectance, Number, Share, Height, Normal };
+/// What a texture is for, which decides what it may hold. A reflectance is at every point a colour in [0, 1], light one
+/// that is finite and at least 0; a share or a roughness is one number, which its user brings into its range.
+enum class TextureUse { Reflectance, Light, Number, Share, Height, Normal };
 
 /// How fast a colour changes with u and with v.
 struct TextureGradient {
