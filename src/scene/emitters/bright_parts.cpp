@@ -38,9 +38,10 @@ std::array<TexturedCorner, 4> corners_of(std::size_t part, std::size_t per_side,
     return {corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
 }
 
-/// With which measuring the texture over the mesh takes a second at most.
+/// With which measuring the texture over the mesh takes a second or two at most: 1 where it is an image of 2048 x 2048
+/// pixels over a rectangle. Cells are those of the boxes around triangles.
 double affordable_coarseness(const TriangleMesh& mesh, const Texture& texture) {
-    constexpr double most_cells = 1 << 20;
+    constexpr double most_cells = 1e7;
     constexpr double coarsest = 1e300;
     const auto cells = [&](double coarseness) {
         double sum = 0.0;

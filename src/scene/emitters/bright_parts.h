@@ -4,8 +4,8 @@
 // The square of random numbers by which a point is drawn uniform in area is cut into n x n parts, on a mesh that of
 // each triangle, and a part is drawn by its area times the mean of the texture on it. Any probability is unbiased that
 // is above 0 where the texture is, as what is drawn is divided by it. Means are exact on triangles (texture_mean.h),
-// unless they span more than a million texels; elsewhere they are those of a million points spread evenly. Where they
-// are not exact, what seems to be black is drawn a little all the same.
+// unless they span more than four million texels; elsewhere they are those of a million points spread evenly. Where
+// they are not exact, what seems to be black is drawn a little all the same.
 
 #pragma once
 
