@@ -102,9 +102,8 @@ void follow_light(const Scene& scene, const PhotonSettings& settings, const Emis
         if (edges > 1 || settings.store_direct) {
             // Where a texture turns the normal, the path may end though a point nearby can gather the photon.
             const bool is_turned = has_turned_normals(scene.materials[scene.shapes[hit->shape].material]);
-            const std::optional<Surface> turned_back =
-                is_turned ? orient_to_gather(scene, *hit, arriving) : std::nullopt;
-            store(is_turned ? turned_back : surface, {arriving, power, edges, only_specular}, result);
+            const std::optional<Surface> to_gather = is_turned ? orient_to_gather(scene, *hit, arriving) : std::nullopt;
+            store(is_turned ? to_gather : surface, {arriving, power, edges, only_specular}, result);
         }
         if (!surface) return;
         if (edges == edge_limit) break;
