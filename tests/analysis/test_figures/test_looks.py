@@ -12,7 +12,7 @@ from matplotlib import pyplot
 
 from photonlab import figures
 from photonlab.drawing import style, text
-from photonlab.figures import convergence, deviations, relaxation, scaling
+from photonlab.figures import convergence
 from support import ANALYSIS, synthetic, whole_results
 from support.images import layered, write_exr, write_runs
 from support.in_folder import InFolder, run
@@ -209,11 +209,11 @@ class Notebook(InFolder):
         for command in ["decomposition", "fits"]:
             self.output_of(command)
         before = sorted(self.results.rglob("*"))
-        kinds = [name for name in whole_results.COMMANDS if name in {module.COMMAND.name for module in figures.MODULES}]
+        commands = {module.COMMAND.name: module.COMMAND for module in figures.MODULES}
+        kinds = [name for name in whole_results.COMMANDS if name in commands]
         self.assertGreater(len(kinds), 12)
         for kind in kinds:
-            measured = {"scaling": scaling.Measured, "deviations": deviations.Measured, "relaxation": relaxation.Measured}.get(kind)
-            results = measured(self.results) if measured else self.read()
+            results = self.read() if commands[kind].selects else commands[kind].read(self.results)
             self.assertTrue(figures.of(kind, results), kind)
             pyplot.close("all")
         self.assertEqual(sorted(self.results.rglob("*")), before)
