@@ -187,10 +187,12 @@ def draw(table):
     looks = looks_of(table)
     handles = [lines.Line2D([], [], **look) for look in looks.values()]
     handles.append(lines.Line2D([], [], label="proportional", **GUIDE))
+    has_meshes = any(curve(table, "triangles", "seconds", threads=threads) for threads in THREADS)
     figure, grid = panels_over_legend(
-        3, 2, handles, "Cornell box, and where triangles are counted with two boulders in place of its blocks. PPM from 100,000 photon "
-        "paths a pass and 256 x 256 hit points, but against passes. Memory is photons with their index, at their largest so far, and "
-        "against triangles the whole process.", panel_height=1.7, same_heights=False)
+        3 if has_meshes else 2, 2, handles,
+        f"Cornell box{', and where triangles are counted with two boulders in place of its blocks' if has_meshes else ''}. PPM from "
+        "100,000 photon paths a pass and 256 x 256 hit points, but against passes. Memory is photons with their index, at their "
+        f"largest so far{', and against triangles the whole process' if has_meshes else ''}.", panel_height=1.7, same_heights=False)
 
     def panel(axes, label, drawn):
         axes.set_visible(bool(drawn))
@@ -214,11 +216,13 @@ def draw(table):
 
     every = panel(grid[0][0], "photon paths a pass", seconds("photons"))
     every += panel(grid[1][0], "hit points", seconds("hit_points"))
-    every += panel(grid[2][0], "triangles", seconds("triangles"))
+    if has_meshes:
+        every += panel(grid[2][0], "triangles", seconds("triangles"))
     limits(grid[:, 0], every, "seconds a pass")
     every = panel(grid[0][1], "photon paths a pass", mebibytes("photons", "threads", THREADS))
     every += panel(grid[1][1], "passes (500 paths each)", mebibytes("passes", "integrator", integrators_of(table)))
-    every += panel(grid[2][1], "triangles", of_each("triangles", "peak_rss_mib"))
+    if has_meshes:
+        every += panel(grid[2][1], "triangles", of_each("triangles", "peak_rss_mib"))
     limits(grid[:, 1], every, "memory (MiB)")
     for axes in (axes for axes in grid.flat if axes.get_visible()):
         (low, high), (bottom, top) = axes.get_xlim(), axes.get_ylim()
