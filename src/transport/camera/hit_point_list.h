@@ -51,6 +51,7 @@ public:
 
     std::size_t size() const { return records_.size(); }
     bool empty() const { return records_.empty(); }
+    /// Inlined, so that nothing is unpacked that is not looked at.
     [[gnu::always_inline]] HitPoint operator[](std::size_t index) const {
         const Record& record = records_[index];
         const bool is_plain = (record.seen & of_view) == 0;
