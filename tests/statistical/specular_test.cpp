@@ -11,6 +11,7 @@
 #include "tests/statistical/rendering.h"
 #include "tests/statistical/scenes.h"
 #include "tests/statistical/significance.h"
+#include "tests/support/radius_rules.h"
 
 namespace photonlab::test {
 namespace {
@@ -212,51 +213,85 @@ TEST(MirrorWalls, MakePlatesInfinitePlanes) {
 // ---------------------------------------------------------------------------------------------------------------------
 // The repository's own scenes, small: photons against paths, layer by layer.
 
+struct SmallScene {
+    std::string name;
+    double radius;  ///< scene units
+    std::uint64_t path_passes;
+
+    Scene build() const {
+        return build_scene(load_scene_file(std::string(PHOTONLAB_SOURCE_DIR) + "/scenes/" + name + "/scene.xml"),
+                           Resolution{24, 24});
+    }
+};
+
+/// Image means of the layers, mean over channels, a value a seed.
+struct LayerMeans {
+    std::vector<double> direct, gathered, both;
+    std::vector<Color> emission;  ///< pixels; they do not depend on the seed
+};
+
+LayerMeans layer_means(const Scene& scene, const HitPoints& hit_points, const MethodSettings& method,
+                       std::uint64_t passes) {
+    LayerMeans means;
+    for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+        const Image image = render(scene, hit_points, method, {.passes = passes, .seed = seed}).image;
+        means.direct.push_back(mean_channel(mean_of(image, direct_layer)));
+        means.gathered.push_back(mean_channel(mean_of(image, gathered_layer)));
+        means.both.push_back(means.direct.back() + means.gathered.back());
+        if (seed == 1) means.emission = *image.find(emission_layer);
+        EXPECT_EQ(*image.find(emission_layer), means.emission);
+    }
+    return means;
+}
+
 // Image means, so that the disc of the gather mostly moves light within the image; what is lost is 0.21 r of the light
 // along the edges of surfaces (docs/theory.md, section 4, integrated over the distance). For walls of width w lit all
 // over that is 4 x 0.21 r / w: 0.9% of the Cornell box (w = 550, r = 6), 0.6% of the others; 1% is allowed for.
 TEST(ScenesOfMirrorsAndGlass, HaveTheSameMeansByPathsAndByPhotons) {
-    struct SmallScene {
-        std::string name;
-        double radius;  ///< scene units
-        std::uint64_t path_passes;
-    };
-    constexpr std::uint64_t seeds = 16;
     constexpr double bias = 0.01;
     ClaimFamily claims;
     for (const SmallScene& small : {SmallScene{"cornell-spheres", 6.0, 100}, SmallScene{"glass-sphere", 0.4, 170},
                                     SmallScene{"water", 0.03, 320}}) {
-        const Scene scene =
-            build_scene(load_scene_file(std::string(PHOTONLAB_SOURCE_DIR) + "/scenes/" + small.name + "/scene.xml"),
-                        Resolution{24, 24});
+        const Scene scene = small.build();
         const HitPoints hit_points = trace_hit_points(scene, 1, 1);
-        std::vector<Color> emission;  // of the first method, and the same of every other
-        struct Layers {
-            std::vector<double> direct, gathered, both;
+        const auto means_of = [&](const MethodSettings& method, std::uint64_t passes) {
+            return layer_means(scene, hit_points, method, passes);
         };
-        const auto layers_of = [&](const MethodSettings& method, std::uint64_t passes) {
-            Layers layers;
-            for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-                const Image image = render(scene, hit_points, method, {.passes = passes, .seed = seed}).image;
-                layers.direct.push_back(mean_channel(mean_of(image, direct_layer)));
-                layers.gathered.push_back(mean_channel(mean_of(image, gathered_layer)));
-                layers.both.push_back(layers.direct.back() + layers.gathered.back());
-                if (emission.empty()) emission = *image.find(emission_layer);
-                EXPECT_EQ(*image.find(emission_layer), emission) << small.name;
-            }
-            return layers;
-        };
-        const Layers path = layers_of({.integrator = "path"}, small.path_passes);
-        const Layers ppm =
-            layers_of({.alpha = 0.9, .radius = small.radius, .direct_samples = 4, .photons_per_pass = 20'000}, 3);
+        const LayerMeans path = means_of({.integrator = "path"}, small.path_passes);
+        const LayerMeans ppm =
+            means_of({.alpha = 0.9, .radius = small.radius, .direct_samples = 4, .photons_per_pass = 20'000}, 3);
         claims.means_agree(small.name + ", ppm, direct", ppm.direct, path.direct, 0.005);
         claims.means_agree(small.name + ", ppm, gathered", ppm.gathered, path.gathered, 0.045, bias);
-        const Layers photons = layers_of(
+        const LayerMeans photons = means_of(
             {.alpha = 0.9, .radius = small.radius, .direct = DirectMode::Photons, .photons_per_pass = 20'000}, 3);
         claims.means_agree(small.name + ", ppm, direct by photons", photons.gathered, path.both, 0.035, bias);
-        const Layers map =
-            layers_of({.integrator = "photonmapper", .radius = small.radius, .photons_per_pass = 40'000}, 1);
+        const LayerMeans map =
+            means_of({.integrator = "photonmapper", .radius = small.radius, .photons_per_pass = 40'000}, 1);
         claims.means_agree(small.name + ", photonmapper, gathered", map.gathered, path.gathered, 0.045, bias);
+        for (const LayerMeans* means : {&ppm, &photons, &map}) EXPECT_EQ(means->emission, path.emission) << small.name;
+    }
+}
+
+// Every radius rule, over points that stay and points that are new at the same places, from a disc of half the size.
+TEST(ScenesOfMirrorsAndGlass, HaveTheMeansOfPathsInEachLayerByEveryRadiusRule) {
+    constexpr double bias = 0.005;
+    ClaimFamily claims;
+    for (const SmallScene& small : {SmallScene{"cornell-spheres", 3.0, 200}, SmallScene{"glass-sphere", 0.2, 400}}) {
+        const Scene scene = small.build();
+        const HitPoints hit_points = trace_hit_points(scene, 1, 1);
+        const LayerMeans path = layer_means(scene, hit_points, {.integrator = "path"}, small.path_passes);
+        std::vector<NamedMethod> methods =
+            methods_by_every_radius_rule({.radius = small.radius, .direct_samples = 4, .photons_per_pass = 20'000});
+        std::erase_if(methods, [](const NamedMethod& method) { return method.settings.positions != Positions::Grid; });
+        methods.push_back({"sppm of one branch", methods.back().settings});
+        methods.back().settings.integrator = "sppm";
+        methods.back().settings.branches = Branches::One;
+        for (const NamedMethod& method : methods) {
+            const LayerMeans means = layer_means(scene, hit_points, method.settings, 4);
+            claims.means_agree(small.name + ", " + method.name + ", direct", means.direct, path.direct, 0.005);
+            claims.means_agree(small.name + ", " + method.name + ", gathered", means.gathered, path.gathered, 0.045,
+                               bias);
+        }
     }
 }
 
