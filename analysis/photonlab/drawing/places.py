@@ -1,4 +1,4 @@
-"""What errors are drawn against: passes, seconds, light paths or memory."""
+"""What errors are drawn against: passes, seconds by the clock or of processors, light paths or memory."""
 
 from dataclasses import dataclass
 
@@ -18,5 +18,6 @@ class Axis:
 
 
 AXES = {"passes": Axis("pass", ("pass",)), "seconds": Axis("time of all passes so far (s)", ("seconds",)),
+        "cpu_seconds": Axis("processor time of all passes so far (s)", ("cpu_seconds",)),
         "photons": Axis("light paths emitted", ("paths_emitted",)),
         "memory": Axis("photon map and hit points (MiB)", ("map_bytes", "hit_point_bytes"), MEBIBYTE)}

@@ -228,7 +228,7 @@ def make(results, options):
 def add_options(parser):
     parser.add_argument("--components", choices=records.COMPONENTS, nargs="+", default=[None], help="which light, a figure each "
                         "(default: gathered, where the reference has it)")
-    parser.add_argument("--against", choices=[name for name in AXES if name != "memory"], default="passes",
+    parser.add_argument("--against", choices=[name for name in AXES if name not in ["cpu_seconds", "memory"]], default="passes",
                         help="the horizontal axis (default: passes); photons are the light paths emitted")
     parser.add_argument("--roots", action="store_true", help="draw RMSE and the roots of variance and squared bias, in radiance")
 

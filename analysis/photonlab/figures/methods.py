@@ -2,8 +2,8 @@
 against the initial radius where one was swept.
 
 The baseline is ppm with schedule hachisuka, at the initial radius that most methods have. Values are those of decomposition.csv, of
-gathered light at the last pass; a ratio's standard error takes numerator and denominator as independent, which the shared photons
-make too large.
+gathered light at the last pass. A ratio's standard error is that of both together where they have the same seeds, so that what they
+share, photons and the reference's noise, is not counted; of other seeds it takes them as independent.
 """
 
 import numpy
@@ -13,8 +13,9 @@ from photonlab.command import Command, has
 from photonlab.drawing import style
 from photonlab.drawing.panels import filled, name_row, panels_over_legend, set_titles
 from photonlab.drawing.saving import Drawn
-from photonlab.records import methods, tables
+from photonlab.records import ensembles, methods, tables
 from photonlab.statistics import decomposition
+from photonlab.statistics.moments import error_of_ratio, moments_of
 
 NAME = "methods.csv"
 SWEPT = "footprints"
@@ -43,7 +44,24 @@ def rule_of(row, columns):
     return ", ".join(columns.setting_text(name, row[name]) for name in NAMED if name in row and row[name])
 
 
-def relative_rows(rows):
+def moments_of_points(results, number):
+    """{point: (groups of seeds, {region: moments of gathered light after pass `number`})}."""
+    return {ensemble.point: (ensemble.seeds, {region: moments for (of_pass, region), moments in
+                                              moments_of(ensemble, results, "gathered").items() if of_pass == number})
+            for ensemble, _ in ensembles.read_points(results, [])}
+
+
+def relative_error(row, baseline, moments):
+    """Of the ratio of their MSEs."""
+    if row["point"] == baseline["point"]:
+        return 0.0
+    (seeds, above), (seeds_of_baseline, below) = moments[row["point"]], moments[baseline["point"]]
+    if seeds == seeds_of_baseline and above[row["region"]].pixels == below[row["region"]].pixels:
+        return error_of_ratio(above[row["region"]], below[row["region"]])
+    return abs(row["mse"] / baseline["mse"]) * numpy.hypot(row["mse_error"] / row["mse"], baseline["mse_error"] / baseline["mse"])
+
+
+def relative_rows(rows, moments):
     """A row a method and region; empty where the baseline is not there."""
     common = rows["swept"].value_counts().idxmax()
     table = []
@@ -52,14 +70,11 @@ def relative_rows(rows):
         baseline = of_radius[(of_radius["integrator"] == "ppm") & of_radius["rule"].str.contains("hachisuka")]
         if baseline.empty:
             continue
-        base, base_error = baseline.iloc[0]["mse"], baseline.iloc[0]["mse_error"]
         for _, row in of_radius.iterrows():
-            ratio = row["mse"] / base
-            error = abs(ratio) * numpy.hypot(row["mse_error"] / row["mse"], base_error / base)
             table.append({"scene": scene, "region": region, "method": row["rule"], "pass": int(row["pass"]),
                           "mse": repr(float(row["mse"])), "mse_error": repr(float(row["mse_error"])),
-                          "relative": repr(float(ratio)),
-                          "relative_error": repr(0.0 if row["point"] == baseline.iloc[0]["point"] else float(error))})
+                          "relative": repr(float(row["mse"] / baseline.iloc[0]["mse"])),
+                          "relative_error": repr(float(relative_error(row, baseline.iloc[0], moments)))})
     return table
 
 
@@ -72,8 +87,9 @@ def draw_sweep(rows):
     if not rules:
         return None
     panels = list(dict.fromkeys(zip(rows["scene"], rows["region"])))
-    colors = {rule: f"C{place}" for place, rule in enumerate(rules)}
-    handles = [lines.Line2D([], [], label=rule, color=colors[rule], marker="o") for rule in rules]
+    looks = {rule: {"color": color, "marker": marker} for rule, color, marker in zip(rules, style.COLOURS, style.MARKERS)}
+    handles = [lines.Line2D([], [], label=rule, **looks[rule]) for rule in rules]
+    radii = swept["swept"].astype(float)
     columns = 3
     figure, grid = panels_over_legend(-(-len(panels) // columns), columns, handles,
                                       "Gathered light at the last pass, without the reference's noise; 1.96 standard errors.")
@@ -81,8 +97,8 @@ def draw_sweep(rows):
         own = swept[(swept["scene"] == panel[0]) & (swept["region"] == panel[1])]
         for rule in rules:
             of_rule = own[own["rule"] == rule].assign(place=lambda r: r["swept"].astype(float)).sort_values("place")
-            axes.errorbar(of_rule["place"], of_rule["mse"], yerr=1.96 * of_rule["mse_error"], color=colors[rule], marker="o")
-        axes.set_xscale("log", base=2)
+            axes.errorbar(of_rule["place"], of_rule["mse"], yerr=1.96 * of_rule["mse_error"], **looks[rule])
+        style.logarithmic(axes.xaxis, radii.min() / 1.15, radii.max() * 1.15, base_two=True)
         axes.set_yscale("log")
         set_titles(axes, ", ".join(panel))
         axes.set_xlabel("initial radius (footprints)")
@@ -93,7 +109,7 @@ def draw_sweep(rows):
 
 def make(results, options):
     rows = last_rows(results)
-    table = relative_rows(rows)
+    table = relative_rows(rows, moments_of_points(results, rows["pass"].iloc[0]))
     if not table:
         yield f"{results.folder}: no ppm with schedule hachisuka, which the others are compared with"
         return

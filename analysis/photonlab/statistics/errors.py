@@ -13,7 +13,7 @@ import pandas
 
 from photonlab.records.files import InputError
 
-PLACES = ["seconds", "paths_emitted", "map_bytes", "hit_point_bytes"]    # of a point of a curve, as means over seeds
+PLACES = ["seconds", "cpu_seconds", "paths_emitted", "map_bytes", "hit_point_bytes"]    # of a point of a curve, as means over seeds
 SQUARED = ["mse_unbiased", "mse", "rmse"]    # one quantity, which is shown as RMSE, without the reference's noise where it can be
 
 

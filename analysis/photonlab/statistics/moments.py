@@ -96,3 +96,14 @@ def standard_errors(moments):
     seeds = jackknife_error(decompose(moments), replicates(moments), moments.counts)
     reference = numpy.linalg.norm(moments.reference_terms)
     return numpy.hypot(seeds, [0, reference, reference])
+
+
+def error_of_ratio(above, below):
+    """Standard error of the ratio of two MSEs of the same seeds, pixels and reference: by the jackknife, which leaves a group out
+    of both, and of the reference, whose noise adds to both."""
+    mse = QUANTITIES.index("mse")
+    of_above, of_below = decompose(above)[mse], decompose(below)[mse]
+    ratio = of_above / of_below
+    seeds = jackknife_error(ratio, replicates(above)[:, mse] / replicates(below)[:, mse], above.counts)
+    reference = numpy.linalg.norm(above.reference_terms - ratio * below.reference_terms) / of_below
+    return numpy.hypot(seeds, reference)

@@ -127,8 +127,10 @@ class Looks(InFolder):
         self.assertFalse((self.results / "figures").exists())
 
     def test_what_is_drawn_against_and_which_light_are_chosen(self):
-        figure = convergence.draw(self.read().scenes()[0], components=["gathered"], against=["photons", "memory", "passes"])
-        self.assertEqual([axes.get_xlabel() for axes in figure.axes], ["light paths emitted", "photon map and hit points (MiB)", "pass"])
+        figure = convergence.draw(self.read().scenes()[0], components=["gathered"], 
+                                  against=["photons", "memory", "passes", "cpu_seconds"])
+        self.assertEqual([axes.get_xlabel() for axes in figure.axes], ["light paths emitted", "photon map and hit points (MiB)", "pass",
+                                                                       "processor time of all passes so far (s)"])
         line = next(line for line in figure.axes[0].get_lines() if line.get_label() == LONG[0])
         self.assertEqual(list(line.get_xdata()), [1000, 8000, 64000])
         line = next(line for line in figure.axes[1].get_lines() if line.get_label() == LONG[0])

@@ -38,6 +38,16 @@ class Methods(InFolder):
             self.assertEqual(error == 0.0, "hachisuka" in method)
             self.assertLess(error, 0.2 * expected)
 
+    def test_the_noise_that_both_have_is_in_neither_error(self):
+        for schedule, noise in NOISE.items():
+            made.write_ensemble(self.results, f"box_{schedule}-2", SEEDS, lambda n: 0.0, lambda n: noise / max(1, n) ** 0.5,
+                                numpy.random.default_rng(8))
+        self.output_of("decomposition")
+        self.output_of("methods")
+        row, = (row for row in self.table("methods.csv") if row["region"] == "image" and "adaptive" in row["method"])
+        self.assertAlmostEqual(float(row["relative"]), (NOISE["adaptive"] / NOISE["hachisuka"]) ** 2, delta=1e-3)
+        self.assertLess(float(row["relative_error"]), 5e-4)    # 2.4e-3 if they were independent
+
     def test_the_sweep_has_a_line_a_rule_and_a_place_a_radius(self):
         figure = methods.draw_sweep(methods.last_rows(self.read()))
         for axes in figure.axes:
