@@ -3,8 +3,10 @@ which all are drawn."""
 
 from photonlab.command import options_of
 from photonlab.drawing.saving import Drawn
-from photonlab.figures import (best_alpha, bias_variance, calibration, convergence, deviations, emission, equal_error, equal_time, extremes,
-                               gallery, grid, light_paths, memory, methods, probes, radii, regions, relaxation, scaling, spectrum, strip, time_to_error, tradeoff)
+from photonlab.figures import deviations, extremes, memory, probes, relaxation, scaling
+from photonlab.figures.errors import (best_alpha, bias_variance, calibration, convergence, equal_time, light_paths, methods, regions, spectrum,
+                                      time_to_error, tradeoff)
+from photonlab.figures.pictures import emission, equal_error, gallery, grid, radii, strip
 from photonlab.records.files import InputError
 
 MODULES = [convergence, strip, gallery, bias_variance, spectrum, memory, best_alpha, methods, regions, radii, calibration, light_paths, emission,

@@ -3,7 +3,7 @@
     build/release/tests/statistical/deviation_curves > results/deviations/deviations.csv
     /usr/bin/python3 analysis deviations results/deviations
 
-The scene is a furnace cut by a thin slab, whose answer is exact (tests/statistical/deviations.h); docs/replications/deviations.md says
+The scene is a furnace cut by a thin slab, whose answer is exact (tests/statistical/radii/deviations.h); docs/replications/deviations.md says
 where each deviation is or was. Bars are one standard error over seeds, where they are larger than the mark.
 """
 

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <map>
 
-#include "tests/statistical/deviations.h"
+#include "tests/statistical/radii/deviations.h"
 #include "tests/statistical/significance.h"
 
 namespace photonlab::test {

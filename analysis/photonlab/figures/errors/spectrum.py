@@ -19,7 +19,7 @@ from photonlab.drawing import compared, style
 from photonlab.drawing.panels import name_row, panels_over_legend, set_titles
 from photonlab.drawing.pictures import has_snapshots
 from photonlab.drawing.saving import drawn_of_scenes
-from photonlab.figures.convergence import COMPONENT_TITLES
+from photonlab.figures.errors.convergence import COMPONENT_TITLES
 from photonlab.records import records, snapshots, tables
 from photonlab.statistics import errors
 from photonlab.statistics.spectrum import COLUMNS, NAME, over_seeds, spectrum

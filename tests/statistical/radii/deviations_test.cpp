@@ -1,7 +1,7 @@
 // The six deviations of deviations.h, each with its number beside that of the right update: as theory has both, and by
 // the program's own photons on a scene whose answer is exact.
 
-#include "tests/statistical/deviations.h"
+#include "tests/statistical/radii/deviations.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,1 @@
+"""Figures of errors: against passes, time, settings and regions."""

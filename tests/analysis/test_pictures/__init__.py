@@ -1,0 +1,1 @@
+import support    # finds the analysis
