@@ -18,16 +18,17 @@ from photonlab.command import Command, positive
 from photonlab.drawing import style
 from photonlab.drawing.panels import name_row, panels_over_legend, set_titles
 from photonlab.drawing.saving import Drawn
-from photonlab.records import tables
+from photonlab.figures.errors.convergence import COMPONENT_TITLES
+from photonlab.records import records, tables
 from photonlab.statistics.time_to_error import CLOCKS, COLUMNS, NAME, WITH_NOISE, table_of
 
 
 @style.drawn
-def draw(results, table):
-    """The figure of records and their times to thresholds: a row a scene and a column a clock, of the whole picture; None when
+def draw(results, table, component="total"):
+    """The figure of records and their times to thresholds: a row a scene and a column a clock, of one component; None when
     nothing was reached."""
     labels = results.labels
-    whole = [row for row in table if row["component"] == "total"]
+    whole = [row for row in table if row["component"] == component]
     reached = [row for row in whole if "time" in row]
     if not reached:
         return None
@@ -35,7 +36,7 @@ def draw(results, table):
     styles = style.method_styles(results)
     handles = [lines.Line2D([], [], label=label, **styles[label]) for label in labels]
     figure, grid = panels_over_legend(
-        len(scenes), len(CLOCKS), handles, "Whole picture. Means over seeds with standard errors; arrows: more than the budget, "
+        len(scenes), len(CLOCKS), handles, f"{COMPONENT_TITLES[component].capitalize()}. Means over seeds with standard errors; arrows: more than the budget, "
         f"which is where they start. relMSE {'holds' if WITH_NOISE in {row['error'] for row in whole} else 'without'} the reference's noise.")
     thresholds = [row["threshold"] for row in whole]
     for scene, panels in zip(scenes, grid):
@@ -55,6 +56,7 @@ def draw(results, table):
                                       arrowprops={"arrowstyle": "->", "color": styles[label]["color"]})
             style.logarithmic(axes.yaxis, min(times) / 1.5, max(times) * 2)
             style.logarithmic(axes.xaxis, min(thresholds) / 2, max(thresholds) * 2)
+            axes.set_xticks(sorted(set(thresholds)))
             axes.invert_xaxis()
             set_titles(axes, scene if axes is panels[0] else "", CLOCKS[clock])
             axes.set_xlabel("relMSE to be reached")
@@ -68,7 +70,7 @@ def make(results, options):
         yield f"{results.folder}: no relmse was recorded (was there a reference?), so no times"
         return
     yield tables.Derived(NAME, COLUMNS, table)
-    figure = draw(results, table, **options.look)
+    figure = draw(results, table, options.component, **options.look)
     if figure is None:
         yield f"{results.folder}: no method reached a threshold, so there is nothing to draw"
     else:
@@ -78,6 +80,7 @@ def make(results, options):
 def add_options(parser):
     parser.add_argument("--thresholds", type=positive, nargs="+", default=[1e-1, 1e-2, 1e-3], metavar="RELMSE",
                         help="errors to be reached (default: 0.1 0.01 0.001)")
+    parser.add_argument("--component", choices=records.COMPONENTS, default="total", help="which light is drawn (default: total)")
 
 
 COMMAND = Command(
