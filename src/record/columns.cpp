@@ -352,8 +352,10 @@ std::string csv_header() {
 
 std::string csv_row(const Record& record) {
     std::string line;
-    for (const Column& column : columns())
-        line += (&column == &columns().front() ? "" : ",") + csv_cell(column.value(record));
+    for (const Column& column : columns()) {
+        if (&column != &columns().front()) line += ',';
+        line += csv_cell(column.value(record));
+    }
     return line;
 }
 

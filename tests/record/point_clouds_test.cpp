@@ -43,7 +43,7 @@ TEST_F(PointClouds, PhotonsLieOnTheWallsWithTheirShareOfThePower) {
     const std::size_t count = pass.photons.size();
     ASSERT_GT(count, 1000u);
     const std::string all = vertices_of(photons_as_ply(scene_, pass, 1'000'000), count, photon_bytes);
-    const float lamp = 8.0f * pi;  // red, of 8 a steradian and area: pi L A, and A is 1
+    const auto lamp = static_cast<float>(8.0 * pi);  // red, of 8 a steradian and area: pi L A, and A is 1
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t at = i * photon_bytes;
         const float x = number(all, at), y = number(all, at + 4), z = number(all, at + 8);

@@ -93,7 +93,8 @@ MemoryEstimate MemoryEstimator::of(const std::vector<RunSettings>& together, std
     for (const RunSettings& one : together)
         if (one.method.area != AreaMode::Disc) held += bytes_of_area;
     if (traces_visible_paths(together[0].method))
-        held += bytes_of_disc + (together[0].method.area != AreaMode::Disc ? GatherArea::most_bytes() : 0);
+        held += bytes_of_disc +
+                static_cast<double>(together[0].method.area != AreaMode::Disc ? GatherArea::most_bytes() : 0);
     MemoryEstimate estimate;
     estimate.program = resident_mebibytes();
     estimate.hit_points = margin * points.count * std::max(making, held) / mebibyte;

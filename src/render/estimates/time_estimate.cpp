@@ -75,8 +75,9 @@ TimeEstimate estimate_time(const Scene& scene, const CoarseView& view, const Run
     estimate.seconds = pass_seconds * passes;
     // Photons move when an epoch ends, and each is as long as all before it.
     if (needs_of(settings.method).holds_photons)
-        estimate.seconds += last.times.of(Stage::Relax) * photon_scale * std::bit_width(settings.passes) /
-                            std::bit_width(measured_passes);
+        estimate.seconds += last.times.of(Stage::Relax) * photon_scale *
+                            static_cast<double>(std::bit_width(settings.passes)) /
+                            static_cast<double>(std::bit_width(measured_passes));
     if (has_photons)
         estimate.trace_seconds =
             last.times.of(Stage::Trace) * photon_scale / static_cast<double>(measured_passes) * passes;

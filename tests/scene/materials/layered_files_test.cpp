@@ -262,11 +262,11 @@ protected:
     }
 };
 
-const std::string two = "<string name='filename' value='two.png'/>";
+const std::string two_pixels = "<string name='filename' value='two.png'/>";
 
 TEST_F(TexturesInFiles, WrapAndFilterAsTheySay) {
     const auto wrapped = [&](const std::string& mode, float u) {
-        return value("3.0.0", "bitmap", two + "<string name='wrap_mode' value='" + mode + "'/>", u);
+        return value("3.0.0", "bitmap", two_pixels + "<string name='wrap_mode' value='" + mode + "'/>", u);
     };
     EXPECT_NEAR(wrapped("repeat", 0.25f), 0.0, 1e-6);
     EXPECT_NEAR(wrapped("repeat", 0.75f), 1.0, 1e-6);
@@ -278,11 +278,11 @@ TEST_F(TexturesInFiles, WrapAndFilterAsTheySay) {
     EXPECT_NEAR(wrapped("mirror", 1.25f), 1.0, 1e-6);
     EXPECT_NEAR(wrapped("mirror", 1.75f), 0.0, 1e-6);
     EXPECT_NEAR(wrapped("mirror", -0.25f), 0.0, 1e-6);
-    const std::string nearest = two + "<string name='filter_type' value='nearest'/>";
+    const std::string nearest = two_pixels + "<string name='filter_type' value='nearest'/>";
     EXPECT_EQ(value("3.0.0", "bitmap", nearest, 0.49f), 0.0f);
     EXPECT_EQ(value("3.0.0", "bitmap", nearest, 0.51f), 1.0f);
-    EXPECT_EQ(value("0.6.0", "bitmap", two + "<string name='wrapModeU' value='one'/>", 5.0f), 1.0f);
-    EXPECT_EQ(value("0.6.0", "bitmap", two + "<string name='wrapMode' value='zero'/>", 5.0f), 0.0f);
+    EXPECT_EQ(value("0.6.0", "bitmap", two_pixels + "<string name='wrapModeU' value='one'/>", 5.0f), 1.0f);
+    EXPECT_EQ(value("0.6.0", "bitmap", two_pixels + "<string name='wrapMode' value='zero'/>", 5.0f), 0.0f);
 }
 
 TEST_F(TexturesInFiles, AreDecodedByTheirGamma) {
@@ -300,7 +300,7 @@ TEST_F(TexturesInFiles, AreDecodedByTheirGamma) {
 TEST_F(TexturesInFiles, ShareTheImagesThatTheyLookUp) {
     write_image();
     const std::string bsdf =
-        "<bsdf type='diffuse'><texture type='bitmap' name='reflectance'>" + two + "</texture></bsdf>";
+        "<bsdf type='diffuse'><texture type='bitmap' name='reflectance'>" + two_pixels + "</texture></bsdf>";
     const auto scene =
         load_as("3.0.0", "<shape type='sphere'>" + bsdf + "</shape><shape type='sphere'>" + bsdf + "</shape>");
     const auto image = [&](std::size_t i) {
@@ -342,7 +342,7 @@ TEST_F(TexturesInFiles, OfCheckerboardsAreTheOtherWayAroundAsNumbersIn3) {
 TEST_F(TexturesInFiles, AreScaled) {
     write_image();
     EXPECT_NEAR(value("0.6.0", "scale",
-                      "<float name='scale' value='0.25'/><texture type='bitmap'>" + two + "</texture>", 0.75f),
+                      "<float name='scale' value='0.25'/><texture type='bitmap'>" + two_pixels + "</texture>", 0.75f),
                 0.25, 1e-6);
     EXPECT_NEAR(value("0.6.0", "scale", "<rgb name='value' value='0.5'/><rgb name='scale' value='0.5'/>", 0.75f), 0.25,
                 1e-6);
@@ -360,7 +360,7 @@ TEST_F(TexturesInFiles, AreScaledUpToAReflectance) {
     const std::string board = "<texture type='checkerboard'/>";
     EXPECT_EQ(refusal("2", board), "no error");
     EXPECT_EQ(refusal("3", board), "scene.xml:2: scale: expected reflectances in [0, 1], got values from 0.6 to 1.2");
-    EXPECT_EQ(refusal("2", "<texture type='bitmap'>" + two + "</texture>").substr(0, 19), "scene.xml:2: scale:");
+    EXPECT_EQ(refusal("2", "<texture type='bitmap'>" + two_pixels + "</texture>").substr(0, 19), "scene.xml:2: scale:");
     EXPECT_EQ(refusal("4", "<texture type='scale'><float name='scale' value='0.5'/>" + board + "</texture>"),
               "no error");
     EXPECT_EQ(refusal("-1", board).substr(0, 19), "scene.xml:2: scale:");
@@ -384,7 +384,7 @@ TEST_F(TexturesInFiles, AndOtherPluginsHaveNoPropertiesOfOthers) {
 
 TEST_F(TexturesInFiles, GiveRoughnessOpacityAndWeight) {
     write_image();
-    const std::string map = "<texture type='bitmap' name='NAME'>" + two + "</texture>";
+    const std::string map = "<texture type='bitmap' name='NAME'>" + two_pixels + "</texture>";
     const auto named = [&](const std::string& name) {
         std::string text = map;
         return text.replace(text.find("NAME"), 4, name);

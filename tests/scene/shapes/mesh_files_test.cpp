@@ -29,7 +29,7 @@ std::string bytes_of(T value, bool is_big_endian = false) {
     return bytes;
 }
 
-constexpr double corners[4][8] = {
+constexpr double square_corners[4][8] = {
     {-1, -1, 0.5, 0, 0, 1, 0, 0}, {1, -1, 0.5, 0, 0, 1, 1, 0}, {1, 1, 0.5, 0, 0, 1, 1, 1}, {-1, 1, 0.5, 0, 0, 1, 0, 1}};
 
 /// A square as one polygon, with normals and texture coordinates.
@@ -43,7 +43,7 @@ std::string square_as_ply(const std::string& format, const std::string& number =
     text += "element face 1\nproperty list uchar int vertex_indices\nelement edge 1\nproperty int one\nend_header\n";
     const bool is_text = format == "ascii";
     const bool is_big = format == "binary_big_endian";
-    for (const auto& corner : corners) {
+    for (const auto& corner : square_corners) {
         for (const double value : corner)
             text += is_text              ? fmt::format("{} ", value)
                     : number == "double" ? bytes_of(value, is_big)
@@ -61,7 +61,7 @@ void expect_square(const MeshDescription& mesh) {
     ASSERT_EQ(mesh.normals.size(), 4u);
     ASSERT_EQ(mesh.texture_coordinates.size(), 4u);
     for (std::size_t i = 0; i < 4; ++i) {
-        const auto& corner = corners[i];
+        const auto& corner = square_corners[i];
         EXPECT_EQ(mesh.positions[i], VectorD(corner[0], corner[1], corner[2]));
         EXPECT_EQ(mesh.normals[i], VectorD(0, 0, 1));
         EXPECT_EQ(mesh.texture_coordinates[i], Imath::V2d(corner[6], corner[7]));
@@ -144,13 +144,13 @@ std::string square_as_serialized(int version, bool in_double, double height,
     if (version == 4) body += std::string("square") + '\0';
     body += bytes_of<std::uint64_t>(4) + bytes_of<std::uint64_t>(2);
     const auto add = [&](double value) { body += in_double ? bytes_of(value) : bytes_of(static_cast<float>(value)); };
-    for (const auto& corner : corners)
+    for (const auto& corner : square_corners)
         for (int i = 0; i < 3; ++i) add(corner[i] + (i == 2 ? height : 0.0));
     if ((parts & with_normals) != 0)
-        for (const auto& corner : corners)
+        for (const auto& corner : square_corners)
             for (int i = 3; i < 6; ++i) add(corner[i]);
     if ((parts & with_texture) != 0)
-        for (const auto& corner : corners)
+        for (const auto& corner : square_corners)
             for (int i = 6; i < 8; ++i) add(corner[i]);
     for (const std::uint32_t index : {0u, 1u, 2u, 0u, 2u, 3u}) body += bytes_of(index);
     return bytes_of<std::uint16_t>(0x041C) + bytes_of(static_cast<std::uint16_t>(version)) + deflated(body);
