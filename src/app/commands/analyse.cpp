@@ -118,8 +118,9 @@ void start_analysis(const std::vector<std::string>& words) {
 
 std::vector<std::string> kinds_of_figures() {
     std::vector<std::string> kinds;
-    for (const std::filesystem::path& file : entries_of(installed_folder("analysis") / "photonlab" / "figures"))
+    for (const std::filesystem::path& file : files_below(installed_folder("analysis") / "photonlab" / "figures"))
         if (file.extension() == ".py" && file.stem() != "__init__") kinds.push_back(file.stem().string());
+    std::sort(kinds.begin(), kinds.end());
     return kinds;
 }
 
