@@ -1,4 +1,4 @@
-"""One file a figure: draw() takes records and returns it, and COMMAND makes a command of it. This is the list of them, in the order in
+"""One file a figure, those of errors and those with pictures in folders of their own: draw() takes records and returns it, and COMMAND makes a command of it. This is the list of them, in the order in
 which all are drawn."""
 
 from photonlab.command import options_of

@@ -47,13 +47,13 @@ class Moments:
         return Moments(self.gram[numpy.ix_(kept, kept)], self.counts[kept], self.floor, self.pixels, self.reference_terms)
 
 
-def moments_of(ensemble, results, component):
-    """{(pass, region): Moments}; empty where the component does not apply."""
+def moments_of(ensemble, results, component, passes=None):
+    """{(pass, region): Moments} of these passes, or all; empty where the component does not apply."""
     if component == "direct" and ensemble.description["photons_carry_direct"]:
         return {}
     halves = ensembles.read_halves(ensemble, results, component)
     found = {}
-    for number in ensemble.description["passes"]:
+    for number in ensemble.description["passes"] if passes is None else passes:
         images = numpy.stack([ensemble.component(group, number, component) for group in range(len(ensemble.seeds))])
         mean = sum(halves) / len(halves) if halves else numpy.zeros(images.shape[1:])
         noise = (numpy.full_like(mean, numpy.nan) if not halves else (halves[0] - halves[1]) ** 2 / 4 if len(halves) == 2
@@ -99,8 +99,8 @@ def standard_errors(moments):
 
 
 def error_of_ratio(above, below):
-    """Standard error of the ratio of two MSEs of the same seeds, pixels and reference: by the jackknife, which leaves a group out
-    of both, and of the reference, whose noise adds to both."""
+    """Standard error of the ratio of two MSEs of the same groups of seeds, pixels and reference: by the jackknife, which leaves a
+    group out of both, and of the reference, whose noise adds to both, where it has two halves. NaN with fewer than three groups."""
     mse = QUANTITIES.index("mse")
     of_above, of_below = decompose(above)[mse], decompose(below)[mse]
     ratio = of_above / of_below

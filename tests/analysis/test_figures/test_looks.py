@@ -127,7 +127,7 @@ class Looks(InFolder):
         self.assertFalse((self.results / "figures").exists())
 
     def test_what_is_drawn_against_and_which_light_are_chosen(self):
-        figure = convergence.draw(self.read().scenes()[0], components=["gathered"], 
+        figure = convergence.draw(self.read().scenes()[0], components=["gathered"],
                                   against=["photons", "memory", "passes", "cpu_seconds"])
         self.assertEqual([axes.get_xlabel() for axes in figure.axes], ["light paths emitted", "photon map and hit points (MiB)", "pass",
                                                                        "processor time of all passes so far (s)"])

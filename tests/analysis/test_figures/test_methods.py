@@ -1,5 +1,6 @@
 """What is said of methods beside each other: ratios to PPM's MSE, radii, and whether estimated errors are right."""
 
+import shutil
 import unittest
 
 import numpy
@@ -47,6 +48,18 @@ class Methods(InFolder):
         row, = (row for row in self.table("methods.csv") if row["region"] == "image" and "adaptive" in row["method"])
         self.assertAlmostEqual(float(row["relative"]), (NOISE["adaptive"] / NOISE["hachisuka"]) ** 2, delta=1e-3)
         self.assertLess(float(row["relative_error"]), 5e-4)    # 2.4e-3 if they were independent
+
+    def test_without_the_sums_over_seeds_errors_are_those_of_independent_methods(self):
+        self.output_of("methods")
+        rows = self.table("methods.csv")
+        shutil.rmtree(self.results / "ensembles")
+        self.assertIn("errors of ratios are those of independent methods", self.output_of("methods"))
+        for row, other in zip(rows, self.table("methods.csv")):
+            self.assertEqual(row["relative"], other["relative"])
+            self.assertEqual(float(other["relative_error"]) == 0.0, "hachisuka" in row["method"])
+
+    def test_scenes_that_were_not_asked_for_are_left_out(self):
+        self.assertIn("no ppm with schedule hachisuka", self.output_of("methods", "--methods", "*adaptive*"))
 
     def test_the_sweep_has_a_line_a_rule_and_a_place_a_radius(self):
         figure = methods.draw_sweep(methods.last_rows(self.read()))

@@ -3,7 +3,8 @@ against the initial radius where one was swept.
 
 The baseline is ppm with schedule hachisuka, at the initial radius that most methods have. Values are those of decomposition.csv, of
 gathered light at the last pass. A ratio's standard error is that of both together where they have the same seeds, so that what they
-share, photons and the reference's noise, is not counted; of other seeds it takes them as independent.
+share, photons and the reference's noise, is not counted; it takes them as independent where their seeds or references differ or the
+sums over seeds are gone. A reference of one image has a noise that is not known, and not in it.
 """
 
 import numpy
@@ -14,6 +15,7 @@ from photonlab.drawing import style
 from photonlab.drawing.panels import filled, name_row, panels_over_legend, set_titles
 from photonlab.drawing.saving import Drawn
 from photonlab.records import ensembles, methods, tables
+from photonlab.records.files import InputError
 from photonlab.statistics import decomposition
 from photonlab.statistics.moments import error_of_ratio, moments_of
 
@@ -32,6 +34,7 @@ def last_rows(results):
     rows = rows[(rows["component"] == "gathered") & (rows["pass"] == last)].copy()
     points = results.rows["run"].map(methods.point_of)
     rows["method"] = rows["point"].map(dict(zip(points, results.rows["method"])))
+    rows = rows[rows["method"].notna()].copy()    # what was not asked for
     first = results.rows.drop_duplicates("method").set_index("method")
     rows["swept"] = rows["method"].map(first[SWEPT]).fillna("")
     rows["integrator"] = rows["method"].map(first["integrator"])
@@ -45,9 +48,9 @@ def rule_of(row, columns):
 
 
 def moments_of_points(results, number):
-    """{point: (groups of seeds, {region: moments of gathered light after pass `number`})}."""
-    return {ensemble.point: (ensemble.seeds, {region: moments for (of_pass, region), moments in
-                                              moments_of(ensemble, results, "gathered").items() if of_pass == number})
+    """{point: (reference, groups of seeds, {region: moments of gathered light after pass `number`})}."""
+    return {ensemble.point: (ensemble.judged.get("reference"), ensemble.seeds,
+                             {region: moments for (_, region), moments in moments_of(ensemble, results, "gathered", [number]).items()})
             for ensemble, _ in ensembles.read_points(results, [])}
 
 
@@ -55,9 +58,10 @@ def relative_error(row, baseline, moments):
     """Of the ratio of their MSEs."""
     if row["point"] == baseline["point"]:
         return 0.0
-    (seeds, above), (seeds_of_baseline, below) = moments[row["point"]], moments[baseline["point"]]
-    if seeds == seeds_of_baseline and above[row["region"]].pixels == below[row["region"]].pixels:
-        return error_of_ratio(above[row["region"]], below[row["region"]])
+    of_row, of_baseline = (moments.get(one["point"], (None, None, {})) for one in (row, baseline))
+    above, below = (found[2].get(row["region"]) for found in (of_row, of_baseline))
+    if above and below and of_row[:2] == of_baseline[:2] and above.pixels == below.pixels:
+        return error_of_ratio(above, below)
     return abs(row["mse"] / baseline["mse"]) * numpy.hypot(row["mse_error"] / row["mse"], baseline["mse_error"] / baseline["mse"])
 
 
@@ -74,7 +78,7 @@ def relative_rows(rows, moments):
             table.append({"scene": scene, "region": region, "method": row["rule"], "pass": int(row["pass"]),
                           "mse": repr(float(row["mse"])), "mse_error": repr(float(row["mse_error"])),
                           "relative": repr(float(row["mse"] / baseline.iloc[0]["mse"])),
-                          "relative_error": repr(float(relative_error(row, baseline.iloc[0], moments)))})
+                          "relative_error": decomposition.text(relative_error(row, baseline.iloc[0], moments))})
     return table
 
 
@@ -109,7 +113,12 @@ def draw_sweep(rows):
 
 def make(results, options):
     rows = last_rows(results)
-    table = relative_rows(rows, moments_of_points(results, rows["pass"].iloc[0]))
+    try:
+        moments = moments_of_points(results, int(rows["pass"].iloc[0]))
+    except InputError as error:    # the table alone says enough for the ratios
+        moments = {}
+        yield f"{error}: errors of ratios are those of independent methods"
+    table = relative_rows(rows, moments)
     if not table:
         yield f"{results.folder}: no ppm with schedule hachisuka, which the others are compared with"
         return

@@ -28,19 +28,20 @@ def draw(results, table, component="total"):
     """The figure of records and their times to thresholds: a row a scene and a column a clock, of one component; None when
     nothing was reached."""
     labels = results.labels
-    whole = [row for row in table if row["component"] == component]
-    reached = [row for row in whole if "time" in row]
+    chosen = [row for row in table if row["component"] == component]
+    reached = [row for row in chosen if "time" in row]
     if not reached:
         return None
-    scenes = list(dict.fromkeys(row["scene"] for row in whole))
+    scenes = list(dict.fromkeys(row["scene"] for row in chosen))
     styles = style.method_styles(results)
     handles = [lines.Line2D([], [], label=label, **styles[label]) for label in labels]
+    noise = "holds" if WITH_NOISE in {row["error"] for row in chosen} else "without"
     figure, grid = panels_over_legend(
-        len(scenes), len(CLOCKS), handles, f"{COMPONENT_TITLES[component].capitalize()}. Means over seeds with standard errors; arrows: more than the budget, "
-        f"which is where they start. relMSE {'holds' if WITH_NOISE in {row['error'] for row in whole} else 'without'} the reference's noise.")
-    thresholds = [row["threshold"] for row in whole]
+        len(scenes), len(CLOCKS), handles, f"{COMPONENT_TITLES[component].capitalize()}. Means over seeds with standard errors; arrows: "
+        f"more than the budget, which is where they start. relMSE {noise} the reference's noise.")
+    thresholds = [row["threshold"] for row in chosen]
     for scene, panels in zip(scenes, grid):
-        of_scene = [row for row in whole if row["scene"] == scene]
+        of_scene = [row for row in chosen if row["scene"] == scene]
         times = [row.get("time", row["budget"]) for row in of_scene]
         for clock, axes in zip(CLOCKS, panels):
             for place, label in enumerate(labels):
