@@ -78,6 +78,16 @@ public:
         mean_is(what, shifted, common, largest_error);
     }
 
+    /// Two samples of pairs that belong together have the same expectation, but for a difference of at most `bias`
+    /// relative to the second.
+    void paired_means_agree(const std::string& what, const std::vector<double>& first,
+                            const std::vector<double>& second, double largest_error, double bias = 0.0) {
+        std::vector<double> shifted(first);
+        const double common = SampleMean(second).mean;
+        for (std::size_t i = 0; i < second.size(); ++i) shifted[i] += common - second[i];
+        mean_is(what, shifted, common, largest_error, bias);
+    }
+
     /// Two independent samples have the same expectation, but for a difference of at most `bias` relative to the
     /// second. [Welch 1947, for samples of different variance]
     void means_agree(const std::string& what, const std::vector<double>& first, const std::vector<double>& second,

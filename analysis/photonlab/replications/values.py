@@ -13,11 +13,12 @@ from scipy import stats
 from photonlab import command_line
 from photonlab.command import options_of
 from photonlab.figures import probes, relaxation, spectrum
-from photonlab.records import methods, records, tables
+from photonlab.records import ensembles, methods, records, tables
 from photonlab.records.files import InputError
 from photonlab.replications.claims import Value
 from photonlab.statistics import best_alphas, decomposition, equal_time, fits
 from photonlab.statistics.jackknife import over_seeds
+from photonlab.statistics.moments import error_of_ratio, of_pass
 
 SLOTS = 16    # groups of seeds, of which intervals are
 
@@ -88,6 +89,12 @@ class Made:
             raise self.missing(f"decomposition of {scene}_{method}, {component}, {region}, {at or 'last pass'}")
         return rows.iloc[0]
 
+    def moments(self, scene, method, component, at):
+        """Of all regions, from the sums over seeds."""
+        ensemble = ensembles.read_ensemble(self.records, self.folder / "ensembles" / f"{scene}_{method}")
+        ensembles.rows_of(ensemble, self.records)    # says which reference judged its runs
+        return of_pass(ensemble, self.records, component, at)
+
 
 def mean(scene, method, column, component="total", at=None, square_root=False):
     """The mean over seeds of a column; its root where that is asked for."""
@@ -117,12 +124,12 @@ def decomposed(scene, method, quantity="mse", component="gathered", region="imag
 
 
 def relative(scene, method, other, quantity="mse", component="gathered", region="image", at=None):
-    """The ratio of two of these; its error takes them as independent, which shared photons make too large."""
+    """The ratio of two of these. Its error leaves out what both share, where they have the same seeds."""
     def take(made):
         first, second = (made.decomposed(scene, name, component, region, at) for name in [method, other])
-        ratio = first[quantity] / second[quantity]
-        return Value(float(ratio), float(abs(ratio) * numpy.hypot(first[f"{quantity}_error"] / first[quantity],
-                                                                  second[f"{quantity}_error"] / second[quantity])))
+        error = error_of_ratio(*(made.moments(scene, name, component, int(first["pass"])) for name in [method, other]), region, quantity)
+        return Value(float(first[quantity] / second[quantity]),
+                     float(decomposition.error_of_independent_ratio(first, second, quantity) if error is None else error))
     return take
 
 

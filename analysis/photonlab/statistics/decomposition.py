@@ -57,6 +57,12 @@ def read_decomposition(results):
     return rows
 
 
+def error_of_independent_ratio(first, second, quantity):
+    """Standard error of the ratio of a quantity of two rows of the table, of methods that share nothing."""
+    return abs(first[quantity] / second[quantity]) * numpy.hypot(first[f"{quantity}_error"] / first[quantity],
+                                                                 second[f"{quantity}_error"] / second[quantity])
+
+
 def pass_of_images(ensemble, wanted):
     """The pass that was asked for, or the last."""
     passes = ensemble.description["passes"]

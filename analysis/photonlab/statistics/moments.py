@@ -98,12 +98,23 @@ def standard_errors(moments):
     return numpy.hypot(seeds, [0, reference, reference])
 
 
-def error_of_ratio(above, below):
-    """Standard error of the ratio of two MSEs of the same groups of seeds, pixels and reference: by the jackknife, which leaves a
-    group out of both, and of the reference, whose noise adds to both, where it has two halves. NaN with fewer than three groups."""
-    mse = QUANTITIES.index("mse")
-    of_above, of_below = decompose(above)[mse], decompose(below)[mse]
+def of_pass(ensemble, results, component, number):
+    """(reference, groups of seeds, {region: moments}) of one point after a pass."""
+    found = moments_of(ensemble, results, component, [number])
+    return ensemble.judged.get("reference"), ensemble.seeds, {region: moments for (_, region), moments in found.items()}
+
+
+def error_of_ratio(first, second, region, quantity="mse"):
+    """Standard error of the ratio of two points' variances, squared biases or MSEs, of what of_pass() gives of each: by the jackknife,
+    which leaves the same seeds out of both, and of the reference, whose noise adds to both, where it has two halves. NaN with fewer
+    than three groups; None where seeds, reference or pixels are not the same."""
+    above, below = first[2].get(region), second[2].get(region)
+    if above is None or below is None or first[:2] != second[:2] or above.pixels != below.pixels:
+        return None
+    place = QUANTITIES.index(quantity)
+    of_above, of_below = decompose(above)[place], decompose(below)[place]
     ratio = of_above / of_below
-    seeds = jackknife_error(ratio, replicates(above)[:, mse] / replicates(below)[:, mse], above.counts)
-    reference = numpy.linalg.norm(above.reference_terms - ratio * below.reference_terms) / of_below
-    return numpy.hypot(seeds, reference)
+    seeds = jackknife_error(ratio, replicates(above)[:, place] / replicates(below)[:, place], above.counts)
+    if quantity == "variance":
+        return seeds
+    return numpy.hypot(seeds, numpy.linalg.norm(above.reference_terms - ratio * below.reference_terms) / of_below)

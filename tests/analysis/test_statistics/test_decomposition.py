@@ -66,7 +66,7 @@ class Decompose(unittest.TestCase):
                 above = moments_beside(0.3 + 0.5 * shared + 0.1 * self.random.standard_normal((16, 64)), reference)[0]
                 below = moments_beside(0.5 + 0.4 * shared, reference)[0]
                 found.append(decompose(above)[2] / decompose(below)[2])
-                claimed.append(error_of_ratio(above, below))
+                claimed.append(error_of_ratio(*((None, None, {"image": moments}) for moments in [above, below]), "image"))
             self.assertLess(abs(numpy.mean(numpy.square(claimed)) / numpy.var(found) - 1), 0.2, noise)
 
     def test_knows_the_error_that_the_references_noise_makes(self):

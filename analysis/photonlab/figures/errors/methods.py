@@ -17,7 +17,8 @@ from photonlab.drawing.saving import Drawn
 from photonlab.records import ensembles, methods, tables
 from photonlab.records.files import InputError
 from photonlab.statistics import decomposition
-from photonlab.statistics.moments import error_of_ratio, moments_of
+from photonlab.statistics.decomposition import error_of_independent_ratio
+from photonlab.statistics.moments import error_of_ratio, of_pass
 
 NAME = "methods.csv"
 SWEPT = "footprints"
@@ -48,21 +49,19 @@ def rule_of(row, columns):
 
 
 def moments_of_points(results, number):
-    """{point: (reference, groups of seeds, {region: moments of gathered light after pass `number`})}."""
-    return {ensemble.point: (ensemble.judged.get("reference"), ensemble.seeds,
-                             {region: moments for (_, region), moments in moments_of(ensemble, results, "gathered", [number]).items()})
-            for ensemble, _ in ensembles.read_points(results, [])}
+    """{point: moments of gathered light after pass `number`}."""
+    return {ensemble.point: of_pass(ensemble, results, "gathered", number) for ensemble, _ in ensembles.read_points(results, [])}
 
 
 def relative_error(row, baseline, moments):
     """Of the ratio of their MSEs."""
     if row["point"] == baseline["point"]:
         return 0.0
-    of_row, of_baseline = (moments.get(one["point"], (None, None, {})) for one in (row, baseline))
-    above, below = (found[2].get(row["region"]) for found in (of_row, of_baseline))
-    if above and below and of_row[:2] == of_baseline[:2] and above.pixels == below.pixels:
-        return error_of_ratio(above, below)
-    return abs(row["mse"] / baseline["mse"]) * numpy.hypot(row["mse_error"] / row["mse"], baseline["mse_error"] / baseline["mse"])
+    if {row["point"], baseline["point"]} <= moments.keys():
+        error = error_of_ratio(moments[row["point"]], moments[baseline["point"]], row["region"])
+        if error is not None:
+            return error
+    return error_of_independent_ratio(row, baseline, "mse")
 
 
 def relative_rows(rows, moments):
