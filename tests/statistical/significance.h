@@ -69,22 +69,13 @@ public:
             bias);
     }
 
-    /// Like mean_is() for each value's difference from an expectation of its own; errors are relative to their mean.
+    /// Like mean_is() for each value's difference from an expectation of its own, or from the value that it is paired
+    /// with; errors are relative to their mean.
     void means_are(const std::string& what, const std::vector<double>& values, const std::vector<double>& expected,
-                   double largest_error) {
+                   double largest_error, double bias = 0.0) {
         std::vector<double> shifted(values);
         const double common = SampleMean(expected).mean;
         for (std::size_t i = 0; i < values.size(); ++i) shifted[i] += common - expected[i];
-        mean_is(what, shifted, common, largest_error);
-    }
-
-    /// Two samples of pairs that belong together have the same expectation, but for a difference of at most `bias`
-    /// relative to the second.
-    void paired_means_agree(const std::string& what, const std::vector<double>& first,
-                            const std::vector<double>& second, double largest_error, double bias = 0.0) {
-        std::vector<double> shifted(first);
-        const double common = SampleMean(second).mean;
-        for (std::size_t i = 0; i < second.size(); ++i) shifted[i] += common - second[i];
         mean_is(what, shifted, common, largest_error, bias);
     }
 

@@ -19,6 +19,17 @@ inline Scene floor_for_photons() {
     return build_scene(description);
 }
 
+/// Of power 1, straight from above, at a place in scene units.
+inline Photon photon_on_floor(const Scene& scene, const VectorD& place, std::uint16_t edges) {
+    Photon photon{};
+    photon.position = Vector((place - scene.centre) / scene.unit_length);
+    photon.power = Color(1.0f);
+    photon.incoming = PackedDirection(Vector(0, 1, 0));
+    photon.normal = CoarseDirection(Vector(0, 1, 0));
+    photon.edges = edges & 0x3fffu;
+    return photon;
+}
+
 /// `brighter` times as many a unit of area where x < 0 as where x > 0.
 inline std::vector<Photon> lay_photons(const Scene& scene, std::size_t count, double brighter, std::uint64_t seed) {
     RandomStream random(seed, RandomPurpose::Test, 0, 0);
@@ -27,13 +38,7 @@ inline std::vector<Photon> lay_photons(const Scene& scene, std::size_t count, do
         const bool is_bright = random.next_double() * (1.0 + brighter) < brighter;
         const double x = half_square * random.next_double() * (is_bright ? -1.0 : 1.0);
         const double z = half_square * (2.0 * random.next_double() - 1.0);
-        Photon photon{};
-        photon.position = Vector((VectorD(x, 0.0, z) - scene.centre) / scene.unit_length);
-        photon.power = Color(1.0f);
-        photon.incoming = PackedDirection(Vector(0, 1, 0));
-        photon.normal = CoarseDirection(Vector(0, 1, 0));
-        photon.edges = 1;
-        photons.push_back(photon);
+        photons.push_back(photon_on_floor(scene, {x, 0.0, z}, 1));
     }
     return photons;
 }

@@ -1,5 +1,5 @@
-"""One file a figure, those of errors and those with pictures in folders of their own: draw() takes records and returns it, and COMMAND makes a command of it. This is the list of them, in the order in
-which all are drawn."""
+"""One file a figure, those of errors and those with pictures in folders of their own: draw() takes records and returns it, and COMMAND
+makes a command of it. This is the list of them, in the order in which all are drawn."""
 
 from photonlab.command import options_of
 from photonlab.drawing.saving import Drawn

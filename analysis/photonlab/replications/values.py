@@ -5,7 +5,7 @@ A method is named by its point without the scene: `ppm_alpha-0.7`. Components an
 """
 
 import math
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy
 from scipy import stats
@@ -89,6 +89,7 @@ class Made:
             raise self.missing(f"decomposition of {scene}_{method}, {component}, {region}, {at or 'last pass'}")
         return rows.iloc[0]
 
+    @cache
     def moments(self, scene, method, component, at):
         """Of all regions, from the sums over seeds."""
         ensemble = ensembles.read_ensemble(self.records, self.folder / "ensembles" / f"{scene}_{method}")

@@ -12,6 +12,7 @@
 
 #include "tests/statistical/rendering.h"
 #include "tests/statistical/scenes.h"
+#include "tests/support/laid_photons.h"
 
 namespace photonlab::test {
 namespace {
@@ -76,15 +77,8 @@ Scene floor_under(const KnownLight& light) {
 PhotonPass photons_of(const KnownLight& light, const Scene& scene, std::uint64_t seed, std::uint64_t pass) {
     RandomStream random(seed, RandomPurpose::Test, pass, light.stream);
     PhotonPass placed{.photons = {}, .paths_emitted = photons_per_pass};
-    for (std::uint64_t i = 0; i < photons_per_pass; ++i) {
-        Photon photon{};
-        photon.position = Vector((light.place(random) - scene.centre) / scene.unit_length);
-        photon.power = Color(1.0f);
-        photon.incoming = PackedDirection(Vector(0, 1, 0));
-        photon.normal = CoarseDirection(Vector(0, 1, 0));
-        photon.edges = 2;
-        placed.photons.push_back(photon);
-    }
+    for (std::uint64_t i = 0; i < photons_per_pass; ++i)
+        placed.photons.push_back(photon_on_floor(scene, light.place(random), 2));
     return placed;
 }
 

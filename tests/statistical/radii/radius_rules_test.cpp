@@ -7,6 +7,7 @@
 #include "tests/statistical/rendering.h"
 #include "tests/statistical/scenes.h"
 #include "tests/statistical/significance.h"
+#include "tests/support/laid_photons.h"
 #include "tests/support/radius_rules.h"
 
 namespace photonlab::test {
@@ -45,13 +46,7 @@ PhotonPass place_photons(const Scene& scene, const Density& density, std::uint64
         const double z = half_patch * (2.0 * random.next_double() - 1.0);
         const double most = 1.0 + std::abs(density.slope) * half_patch;
         if (random.next_double() * most > density.at(x)) continue;
-        Photon photon{};
-        photon.position = Vector((VectorD(x, 0.0, z) - scene.centre) / scene.unit_length);
-        photon.power = Color(1.0f);
-        photon.incoming = PackedDirection(Vector(0, 1, 0));
-        photon.normal = CoarseDirection(Vector(0, 1, 0));
-        photon.edges = 2;
-        placed.photons.push_back(photon);
+        placed.photons.push_back(photon_on_floor(scene, {x, 0.0, z}, 2));
     }
     return placed;
 }

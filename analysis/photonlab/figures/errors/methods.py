@@ -7,7 +7,6 @@ share, photons and the reference's noise, is not counted; it takes them as indep
 sums over seeds are gone. A reference of one image has a noise that is not known, and not in it.
 """
 
-import numpy
 from matplotlib import lines
 
 from photonlab.command import Command, has
@@ -17,7 +16,6 @@ from photonlab.drawing.saving import Drawn
 from photonlab.records import ensembles, methods, tables
 from photonlab.records.files import InputError
 from photonlab.statistics import decomposition
-from photonlab.statistics.decomposition import error_of_independent_ratio
 from photonlab.statistics.moments import error_of_ratio, of_pass
 
 NAME = "methods.csv"
@@ -61,7 +59,7 @@ def relative_error(row, baseline, moments):
         error = error_of_ratio(moments[row["point"]], moments[baseline["point"]], row["region"])
         if error is not None:
             return error
-    return error_of_independent_ratio(row, baseline, "mse")
+    return decomposition.error_of_independent_ratio(row, baseline, "mse")
 
 
 def relative_rows(rows, moments):
